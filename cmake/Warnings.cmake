@@ -1,0 +1,12 @@
+# Every room is built with these. Contraction is off so that CPU and GL can agree bit for bit.
+add_library(pellucid_options INTERFACE)
+target_compile_options(pellucid_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Werror -Werror=double-promotion -Werror=float-conversion
+  -ffp-contract=off -fno-fast-math)
+target_include_directories(pellucid_options INTERFACE ${PROJECT_SOURCE_DIR})
+
+option(PELLUCID_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
+if(PELLUCID_SANITIZE)
+  target_compile_options(pellucid_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(pellucid_options INTERFACE -fsanitize=address,undefined)
+endif()

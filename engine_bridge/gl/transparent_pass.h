@@ -1,0 +1,82 @@
+// Streams a scene's transparent triangles, in any order, through GL: into OIT planes, or into exact fragment lists.
+#pragma once
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+
+#include "engine_bridge/scene/scene.h"
+#include "gbuffer/accum.h"
+#include "gbuffer/fragments.h"
+#include "gbuffer/gbuffer.h"
+
+namespace pellucid {
+
+enum class TextureFilter { mipmap, bilinear, nearest };
+enum class MaskEdge { smooth, hard };
+
+// Order in which triangles are submitted. Only for tests: no result may depend on it beyond float rounding.
+struct SubmissionOrder {
+  enum Kind { file, reverse, shuffle } kind = file;
+  std::uint64_t seed = 0;
+};
+
+struct PassSettings {
+  shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
+  int normalisation = shading::PLD_NORMALISE_SPECTRAL;
+  glm::dvec2 sample{0.5, 0.5};  // where in the pixel, y down; (0.5, 0.5) is the centre
+  TextureFilter filter = TextureFilter::mipmap;
+  MaskEdge mask = MaskEdge::smooth;
+  SubmissionOrder order;
+  std::size_t budgetBytes = std::size_t{256} << 20;  // geometry, and for lists fragments, resident at once
+  int tile = 0;                                      // scissor tiles of this edge in pixels; 0 picks one
+  glm::vec3 surroundings{0.0f};                      // constant environment radiance, scene-linear
+};
+
+struct PassStatistics {
+  std::size_t triangles = 0, chunks = 0, tiles = 0, fragments = 0;
+  double seconds = 0;
+};
+
+// A headless GL 4.5 core context: EGL surfaceless, else EGL device. Throws ResourceError when there is none.
+class GlContext {
+ public:
+  explicit GlContext(int device = -1);
+  ~GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+  std::string description() const;  // renderer and version
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// One line per EGL device, for `inspect --devices`.
+std::vector<std::string> listDevices();
+
+class TransparentPass {
+ public:
+  // Uploads textures and the G-buffer's Z; geometry is streamed. The arguments must outlive the pass.
+  TransparentPass(GlContext& context, const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
+  ~TransparentPass();
+
+  // Solid pass, then the sums. May be called again with another sample position.
+  OitPlanes accumulate(const PassSettings& settings);
+
+  // Exact lists of every transparent fragment in front of the G-buffer and of the nearest solid, tile by tile, top to
+  // bottom; together the tiles cover the data window. Fragments of a pixel are in no order.
+  void fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& tile);
+
+  const PassStatistics& statistics() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Replays fragment lists through the same fixed-function blending, in list order: the parity test's GL voice.
+OitPlanes replayFragments(GlContext& context, const FragmentLists& lists, const shading::WeightSettings& weight,
+                          int normalisation);
+
+}  // namespace pellucid

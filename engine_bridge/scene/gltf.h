@@ -1,0 +1,20 @@
+// glTF 2.0 and GLB files to a Scene.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine_bridge/scene/scene.h"
+
+namespace pellucid {
+
+struct SceneOptions {
+  double metresPerUnit = 1.0;          // --unit
+  double lumensPerWatt = 683.0;        // --lumens-per-watt: glTF lights are photometric, renders are not
+  std::vector<std::string> overrides;  // --set MATERIAL.key=value
+};
+
+// Appends the files' contents in the order given. Throws InputError (missing file, missing texture, damaged buffer),
+// MeaningError (a required extension we do not know, by name), UsageError (--set names no material or key).
+Scene loadScene(const std::vector<std::string>& paths, const SceneOptions& options);
+
+}  // namespace pellucid

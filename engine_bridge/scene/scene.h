@@ -1,0 +1,119 @@
+// Plain data of a glTF scene, as the transparent pass and the ray tracer draw it. Nothing here knows GL, Embree or
+// glTF.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gbuffer/camera.h"
+#include "gbuffer/image.h"
+
+namespace pellucid {
+
+// Object space, glTF axes. 64 bytes.
+struct Vertex {
+  glm::vec3 position;
+  glm::vec3 normal;        // unit; computed flat when the file has none
+  glm::vec2 uv[2];         // TEXCOORD_0 and 1
+  glm::vec4 colour{1.0f};  // COLOR_0, linear
+  glm::vec2 spare{0.0f};   // keeps rows of 16 bytes
+};
+static_assert(sizeof(Vertex) == 64);
+
+enum class Wrap { repeat, mirror, clamp };
+
+struct Texture {
+  std::string name;         // for messages: image name or file
+  Image<glm::vec4> texels;  // straight alpha; linear when `colour`, else as stored, 0..1. Row 0 is v = 0.
+  Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
+  bool nearest = false;  // the file's magFilter
+};
+
+struct TextureRef {
+  int texture = -1;             // index into Scene::textures, -1 for none
+  int texCoord = 0;             // 0 or 1
+  glm::mat3 uvTransform{1.0f};  // KHR_texture_transform: uv' = transform * (uv, 1)
+};
+
+enum class AlphaMode { opaque, mask, blend };
+
+struct Material {
+  std::string name;
+  AlphaMode alphaMode = AlphaMode::opaque;
+  float alphaCutoff = 0.5f;
+  bool doubleSided = false, unlit = false;
+  glm::vec4 baseColor{1.0f};
+  float metallic = 1.0f, roughness = 1.0f;
+  glm::vec3 emission{0.0f};  // emissiveFactor * emissiveStrength, scene-linear
+  float transmission = 0.0f;
+  float ior = 1.5f;
+  bool volume = false;               // KHR_materials_volume present with thickness > 0
+  float thickness = 0.0f;            // object space
+  float attenuationDistance = 0.0f;  // metres, 0 = infinite
+  glm::vec3 attenuationColor{1.0f};
+  float diffuseTransmission = 0.0f;
+  TextureRef baseColorTexture, metallicRoughnessTexture, emissiveTexture, transmissionTexture, thicknessTexture;
+  // extras.pellucid and --set MATERIAL.key=value
+  std::optional<float> collimation;  // [0,1]
+  std::optional<float> coverage;     // [0,1], multiplies alpha
+  bool additive = false, lowResolution = false, castsShadow = true;
+  std::optional<bool> thin;  // overrides `volume`
+
+  // Goes through the transparent pass; opaque primitives belong to the G-buffer.
+  bool transparent() const {
+    return alphaMode != AlphaMode::opaque || transmission > 0.0f || additive || coverage.value_or(1.0f) < 1.0f;
+  }
+};
+
+struct Primitive {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  // triangles
+  int material = 0;                    // index into Scene::materials
+};
+
+struct Instance {
+  glm::dmat4 worldFromObject{1.0};
+  int primitive = 0;           // index into Scene::primitives
+  std::string node;            // for messages
+  std::uint32_t identity = 0;  // hash of file, node and mesh
+};
+
+enum class LightKind { directional, point, spot };
+
+struct Light {
+  std::string name;
+  LightKind kind = LightKind::point;
+  glm::vec3 colour{1.0f};
+  float intensity = 0.0f;                            // lux or candela over lumensPerWatt: W/m^2 or W/sr
+  float range = 0.0f;                                // metres, 0 = infinite
+  float innerCone = 0.0f, outerCone = 0.785398163f;  // radians from the axis
+  glm::dvec3 position{0.0};                          // world
+  glm::dvec3 direction{0, 0, -1};                    // world, unit, from the light
+};
+
+struct SceneCamera {
+  std::string name;  // node name, else camera name
+  glm::dmat4 viewFromWorld{1.0};
+  bool orthographic = false;
+  double yfov = 0, aspect = 0;  // perspective; aspect 0 when unstated
+  double xmag = 0, ymag = 0;    // orthographic
+  double znear = 0, zfar = 0;   // zfar 0 = infinite
+};
+
+struct Scene {
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Primitive> primitives;
+  std::vector<Instance> instances;  // in file order
+  std::vector<Light> lights;
+  std::vector<SceneCamera> cameras;
+  std::vector<std::string> notes;  // one sentence each, for stderr
+};
+
+// The camera for a picture of this size. glTF: yfov and the *picture's* aspect decide, as the specification says.
+Camera cameraOf(const SceneCamera& camera, const Window& display, double pixelAspect);
+
+}  // namespace pellucid

@@ -1,0 +1,51 @@
+// Order-independent sums of the transparent layers: what the transparent pass hands to resolve.
+#pragma once
+#include <glm/glm.hpp>
+#include <string>
+
+#include "gbuffer/camera.h"
+#include "gbuffer/image.h"
+#include "shaders/shading.h"
+
+namespace pellucid {
+
+// How the sums were made. Planes that do not match are refused: their sums mean different things.
+struct OitInfo {
+  std::string method = "phenomenological";
+  shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
+  int normalisation = shading::PLD_NORMALISE_SPECTRAL;
+  std::string tier = "float";
+  std::string solidHash;  // of the solid plane: sums behind different solids do not add
+};
+
+// RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl packs them; every plane is a sum, but for
+// frontZ (a minimum) and solid (the nearest).
+struct OitPlanes {
+  Window display, data;
+  OitInfo info;
+  Camera camera;
+  Image<glm::vec4> radiance;  // A.rgb, sum of w_z o
+  Image<glm::vec4> weight;    // W.rgb, layer count
+  Image<glm::vec4> opacity;   // O.rgb, sum of o z
+  Image<glm::vec4> depth;     // tau.rgb, sum of w_z E
+  Image<glm::vec4> light;     // E.rgb, unused
+  Image<float> frontZ;        // nearest transparent layer, planar metres, +inf for none
+  Image<glm::vec4> solid;     // nearest fragment that hides everything: rgb, planar z (+inf for none)
+
+  shading::OitTargets at(int x, int y) const {
+    shading::OitTargets targets;
+    targets.radiance = radiance.at(x, y);
+    targets.weight = weight.at(x, y);
+    targets.opacity = opacity.at(x, y);
+    targets.depth = depth.at(x, y);
+    targets.light = light.at(x, y);
+    return targets;
+  }
+};
+
+// Planes of the window, all sums 0, frontZ and solid.z +inf.
+OitPlanes emptyPlanes(const Window& display, const Window& data);
+// Adds b to a (nearest solid wins only when both are the same: solidHash). Throws MeaningError when they do not match.
+void mergePlanes(OitPlanes& a, const OitPlanes& b);
+
+}  // namespace pellucid

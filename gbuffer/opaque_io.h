@@ -1,0 +1,70 @@
+// Any renderer's EXR to a GBuffer, and back with the beauty replaced where transparency touched it.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gbuffer/exr_document.h"
+#include "gbuffer/gbuffer.h"
+
+namespace pellucid {
+
+struct ReadOptions {
+  std::string preset = "auto";  // auto | blender
+  std::string beautyLayer;      // --beauty: "" resolves it
+  std::string depthChannel;     // --depth: full channel name (with its part where parts have names); "" resolves it
+  std::string depthKind = "planar";  // planar | ray | inverse | device
+  std::optional<double> farValue;    // --far: this and anything beyond is 'nothing hit'
+  double metresPerUnit = 1.0;        // --unit
+};
+
+// What was chosen, by name and why, for `inspect` and for messages.
+struct OpaqueChoice {
+  int beautyPart = 0;
+  std::string beautyChannel[4];  // R, G, B, A; A may be ""
+  int depthPart = 0;
+  std::string depthChannel;
+  std::string depthKind;
+  double farValue = 0;  // the value (file units) from which depth means nothing hit
+  std::size_t farPixels = 0, nonFiniteColour = 0, nonFiniteDepth = 0;
+};
+
+struct OpaqueFile {
+  ExrDocument document;
+  GBuffer gbuffer;
+  OpaqueChoice choice;
+  std::vector<std::string> notes;  // one sentence each, for stderr
+};
+
+// A layer written beside the picture; `channels` are its suffixes ("R","G","B","A"), one float plane each.
+struct ExtraLayer {
+  std::string name;
+  std::vector<std::pair<std::string, Image<float>>> channels;
+};
+
+// Throws InputError (missing, damaged, luminance-chroma, cube map) or MeaningError (no depth, two candidates).
+// `needCamera` matters for depth kinds ray and device: they convert with the camera, so the caller passes one if it has
+// it.
+OpaqueFile readOpaque(const std::string& path, const ReadOptions& options, const Camera* camera = nullptr);
+
+// Same parts, windows, attributes, channel types and compression; only the beauty channels of pixels with touched != 0
+// change, everything else is bit for bit what was read. Lossy compressions are replaced by ZIP, which is noted.
+// Written to a temporary file beside `path`, then renamed. `attributes` are string attributes to add
+// ("pellucid:version").
+void writePicture(const std::string& path, const OpaqueFile& file, const Image<glm::vec4>& picture,
+                  const Image<std::uint8_t>& touched, const std::vector<ExtraLayer>& layers = {},
+                  const std::map<std::string, std::string>& attributes = {});
+
+// A new single-part scanline ZIP file of float or half channels, for everything that has no input to imitate.
+void writeLayers(const std::string& path, const Window& display, const Window& data,
+                 const std::vector<ExtraLayer>& layers, const std::map<std::string, std::string>& attributes = {},
+                 const Camera* camera = nullptr, bool half = false);
+
+// Checks a camera against what the file shows: the P / Position pass reprojected on pixel and depth, when there is one.
+// Also tries Blender's Z-up positions. Returns the median residual in pixels, or nothing when it cannot be checked.
+// Throws MeaningError when the camera contradicts the file.
+std::optional<double> verifyCamera(const OpaqueFile& file, const Camera& camera);
+
+}  // namespace pellucid

@@ -1,0 +1,21 @@
+// Opens shaders/shared to C++: the same text that GL compiles, through GLM, in namespace pellucid::shading.
+#pragma once
+#include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
+
+namespace pellucid::shading {
+using namespace glm;  // NOLINT: the shared text speaks GLSL
+using glm::floatBitsToInt;
+using glm::intBitsToFloat;
+
+#define PLD_FN inline
+#define precise
+#include "shaders/shared/accumulate.glsl"
+#include "shaders/shared/numeric.glsl"
+#include "shaders/shared/resolve.glsl"
+#include "shaders/shared/scattering.glsl"
+#include "shaders/shared/surface.glsl"
+#include "shaders/shared/weight.glsl"
+#undef precise
+#undef PLD_FN
+}  // namespace pellucid::shading

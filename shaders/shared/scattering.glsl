@@ -1,0 +1,61 @@
+#pragma once
+// One transparent surface sample: what it hides, how deep it is optically. MODEL: PS16 eq. 2.
+#include "shared/numeric.glsl"
+
+// Optical depth at which exp(-tau) is 0 in float; one opaque layer ends every sum here.
+const float PLD_OPAQUE_DEPTH = 104.0f;
+// Below this 1 - t a channel is clear: its light is added, not averaged. MODEL section 3.
+const float PLD_CLEAR = 1e-3f;
+
+// Part of the background one sample hides, per channel: o = coverage * (1 - transmission). [0,1]
+//   coverage      part of the pixel it touches, [0,1]
+//   transmission  colour let straight through where it touches, [0,1] per channel
+PLD_FN vec3 opacityOf(float coverage, vec3 transmission) {
+  precise vec3 hidden = coverage * (vec3(1.0f) - transmission);
+  return hidden;
+}
+
+PLD_FN float meanOf(vec3 v) {
+  precise float mean = (v.r + v.g + v.b) * 0.333333343f;
+  return mean;
+}
+
+// -ln(1 - o), capped, accurate down to the smallest o. o in [0,1].
+PLD_FN float opticalDepth(float opacity) {
+  if (opacity < 0.29f) {
+    precise float s = opacity / (2.0f - opacity);
+    precise float q = s * s;
+    precise float thin = s * (2.0f + q * (0.666666667f + q * (0.4f + q * (0.285714286f + q * 0.222222222f))));
+    return thin;
+  }
+  precise float left = 1.0f - opacity;
+  if (left <= 0.0f) return PLD_OPAQUE_DEPTH;
+  precise float thick = min(-pldLog(left), PLD_OPAQUE_DEPTH);
+  return thick;
+}
+
+PLD_FN vec3 opticalDepth3(vec3 opacity) {
+  vec3 depth;
+  depth.r = opticalDepth(opacity.r);
+  depth.g = opticalDepth(opacity.g);
+  depth.b = opticalDepth(opacity.b);
+  return depth;
+}
+
+// beta = exp(-tau): what is left of the background. PS16 eq. 2
+PLD_FN vec3 transmittanceOf(vec3 depth) {
+  vec3 beta;
+  beta.r = pldExp(-depth.r);
+  beta.g = pldExp(-depth.g);
+  beta.b = pldExp(-depth.b);
+  return beta;
+}
+
+// 1 - beta, without the cancellation.
+PLD_FN vec3 netOpacityOf(vec3 depth) {
+  vec3 net;
+  net.r = pldOneMinusExp(depth.r);
+  net.g = pldOneMinusExp(depth.g);
+  net.b = pldOneMinusExp(depth.b);
+  return net;
+}

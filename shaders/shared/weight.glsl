@@ -1,0 +1,102 @@
+#pragma once
+// Depth weights of blended transparency. WB13 eqs. 7-10, PT17 eq. 5.
+#include "shared/numeric.glsl"
+
+const int PLD_WEIGHT_EQ5 = 0;
+const int PLD_WEIGHT_EQ7 = 1;
+const int PLD_WEIGHT_EQ8 = 2;
+const int PLD_WEIGHT_EQ9 = 3;
+const int PLD_WEIGHT_EQ10 = 4;
+const int PLD_WEIGHT_EQ7Z = 5;
+const int PLD_WEIGHT_EQ8Z = 6;
+const int PLD_WEIGHT_EQ9Z = 7;
+const int PLD_WEIGHT_EQ10Z = 8;
+const int PLD_WEIGHT_POWER = 9;
+const int PLD_WEIGHT_UNIFORM = 10;
+
+// Twelve decades either way: what float sums bear without overflow at radiance 1e6 and 100,000 layers.
+const float PLD_WEIGHT_MIN = 1e-12f;
+const float PLD_WEIGHT_MAX = 1e12f;
+
+struct WeightSettings {
+  int kind;         // PLD_WEIGHT_*
+  float rangeNear;  // metres, > 0: where window depth is 0 (eqs. 5 and 10 only)
+  float rangeFar;   // metres, > rangeNear: where it is 1
+  float exponent;   // k of |z|^-k (power only)
+};
+
+// gl_FragCoord.z of a planar distance z, for the stated range. [0,1]. WB13 eq. 11
+PLD_FN float windowDepth(float z, float rangeNear, float rangeFar) {
+  precise float d = (rangeFar * (z - rangeNear)) / (z * (rangeFar - rangeNear));
+  return clamp(d, 0.0f, 1.0f);
+}
+
+PLD_FN float cubeOf(float x) {
+  precise float y = x * x * x;
+  return y;
+}
+
+// PT17 eq. 5; netOpacity is coverage * (1 - mean t).
+PLD_FN float weightEq5(float d, float netOpacity) {
+  precise float base = 10.0f * (1.0f - 0.99f * d) * netOpacity;
+  return clamp(cubeOf(base), 0.01f, 30.0f);
+}
+
+// WB13 eq. 7 without its factor alpha.
+PLD_FN float weightEq7(float z) {
+  precise float a = z / 5.0f;
+  precise float b = min(z / 200.0f, 1e5f);
+  precise float w = 10.0f / (1e-5f + min(a * a, 1e30f) + cubeOf(b) * cubeOf(b));
+  return clamp(w, 0.01f, 3e3f);
+}
+
+// WB13 eq. 8 without its factor alpha.
+PLD_FN float weightEq8(float z) {
+  precise float a = min(z / 10.0f, 1e10f);
+  precise float b = min(z / 200.0f, 1e5f);
+  precise float w = 10.0f / (1e-5f + cubeOf(a) + cubeOf(b) * cubeOf(b));
+  return clamp(w, 0.01f, 3e3f);
+}
+
+// WB13 eq. 9 without its factor alpha.
+PLD_FN float weightEq9(float z) {
+  precise float a = min(z / 200.0f, 1e7f);
+  precise float b = a * a;
+  precise float w = 0.03f / (1e-5f + b * b);
+  return clamp(w, 0.01f, 3e3f);
+}
+
+// WB13 eq. 10 without its factor alpha.
+PLD_FN float weightEq10(float d) {
+  precise float w = 3e3f * cubeOf(1.0f - d);
+  return max(w, 0.01f);
+}
+
+PLD_FN float weightPower(float z, float exponent) {
+  precise float w = pldExp(-exponent * pldLog(z));
+  return clamp(w, PLD_WEIGHT_MIN, PLD_WEIGHT_MAX);
+}
+
+// Weight by depth alone: monotone, falling. What additive light is compared by. z > 0 metres.
+PLD_FN float depthWeight(WeightSettings settings, float z) {
+  float d = windowDepth(z, settings.rangeNear, settings.rangeFar);
+  if (settings.kind == PLD_WEIGHT_EQ5) return weightEq5(d, 1.0f);
+  if (settings.kind == PLD_WEIGHT_EQ7 || settings.kind == PLD_WEIGHT_EQ7Z) return weightEq7(z);
+  if (settings.kind == PLD_WEIGHT_EQ8 || settings.kind == PLD_WEIGHT_EQ8Z) return weightEq8(z);
+  if (settings.kind == PLD_WEIGHT_EQ9 || settings.kind == PLD_WEIGHT_EQ9Z) return weightEq9(z);
+  if (settings.kind == PLD_WEIGHT_EQ10 || settings.kind == PLD_WEIGHT_EQ10Z) return weightEq10(d);
+  if (settings.kind == PLD_WEIGHT_POWER) return weightPower(z, settings.exponent);
+  return 1.0f;
+}
+
+// Weight of a layer in the sums. netOpacity = mean of o over channels, the alpha of WB13.
+PLD_FN float layerWeight(WeightSettings settings, float z, float netOpacity) {
+  if (settings.kind == PLD_WEIGHT_EQ5)
+    return weightEq5(windowDepth(z, settings.rangeNear, settings.rangeFar), netOpacity);
+  float byDepth = depthWeight(settings, z);
+  if (settings.kind >= PLD_WEIGHT_EQ7 && settings.kind <= PLD_WEIGHT_EQ10) {
+    precise float printed = netOpacity * byDepth;
+    return printed;
+  }
+  return byDepth;
+}
