@@ -1,5 +1,6 @@
 # Debian 12 packages; ./dev installs them.
 find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(glm REQUIRED)
 find_package(Imath CONFIG REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)

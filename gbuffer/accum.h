@@ -18,8 +18,8 @@ struct OitInfo {
   std::string solidHash;  // of the solid plane: sums behind different solids do not add
 };
 
-// RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl packs them; every plane is a sum, but for
-// frontZ (a minimum) and solid (the nearest).
+// RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl and refraction.glsl pack them; every plane
+// is a sum, but for frontZ and diffuseZ (minima) and solid (the nearest).
 struct OitPlanes {
   Window display, data;
   OitInfo info;
@@ -28,9 +28,14 @@ struct OitPlanes {
   Image<glm::vec4> weight;    // W.rgb, layer count
   Image<glm::vec4> opacity;   // O.rgb, sum of o z
   Image<glm::vec4> depth;     // tau.rgb, sum of w_z E
-  Image<glm::vec4> light;     // E.rgb, unused
+  Image<glm::vec4> light;     // E.rgb, sum of W z over the refracting layers
   Image<float> frontZ;        // nearest transparent layer, planar metres, +inf for none
   Image<glm::vec4> solid;     // nearest fragment that hides everything: rgb, planar z (+inf for none)
+  // Empty when no layer of the scene refracts or diffuses.
+  Image<glm::vec4> refraction;  // sums of W delta.x, W delta.y, W (float pixels, y down) and of s^2 (pixels^2): D^2
+  Image<float> diffuseZ;        // nearest diffusing layer, planar metres, +inf for none
+
+  bool scatters() const { return !refraction.empty(); }
 
   shading::OitTargets at(int x, int y) const {
     shading::OitTargets targets;
@@ -43,8 +48,13 @@ struct OitPlanes {
   }
 };
 
+// "eq5 0.1 1000 3": the name that --weight takes, rangeNear, rangeFar and exponent, with every bit of them.
+std::string weightText(const shading::WeightSettings& weight);
+
 // Planes of the window, all sums 0, frontZ and solid.z +inf.
 OitPlanes emptyPlanes(const Window& display, const Window& data);
+// Gives planes that lack them those of refraction and diffusion, in which nothing scatters.
+void addScatterPlanes(OitPlanes& planes);
 // Adds b to a (nearest solid wins only when both are the same: solidHash). Throws MeaningError when they do not match.
 void mergePlanes(OitPlanes& a, const OitPlanes& b);
 

@@ -13,7 +13,7 @@ namespace pellucid {
 
 struct ReadOptions {
   std::string preset = "auto";  // auto | blender
-  std::string beautyLayer;      // --beauty: "" resolves it
+  std::string beautyLayer;      // --beauty: a layer, a part or a view; "" resolves it
   std::string depthChannel;     // --depth: full channel name (with its part where parts have names); "" resolves it
   std::string depthKind = "planar";  // planar | ray | inverse | device
   std::optional<double> farValue;    // --far: this and anything beyond is 'nothing hit'
@@ -35,6 +35,7 @@ struct OpaqueFile {
   ExrDocument document;
   GBuffer gbuffer;
   OpaqueChoice choice;
+  double metresPerUnit = 1.0;      // as asked for
   std::vector<std::string> notes;  // one sentence each, for stderr
 };
 
@@ -44,23 +45,28 @@ struct ExtraLayer {
   std::vector<std::pair<std::string, Image<float>>> channels;
 };
 
-// Throws InputError (missing, damaged, luminance-chroma, cube map) or MeaningError (no depth, two candidates).
+// Throws InputError (missing, damaged, luminance-chroma, cube map, mip map) or MeaningError (no depth, two candidates).
+// Camera attributes that contradict themselves are a note and no camera: another may be given.
 // `needCamera` matters for depth kinds ray and device: they convert with the camera, so the caller passes one if it has
 // it.
 OpaqueFile readOpaque(const std::string& path, const ReadOptions& options, const Camera* camera = nullptr);
+// The same, of a file that has been read. Its own camera serves where none is given.
+OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, const Camera* camera = nullptr);
 
 // Same parts, windows, attributes, channel types and compression; only the beauty channels of pixels with touched != 0
 // change, everything else is bit for bit what was read. Lossy compressions are replaced by ZIP, which is noted.
 // Written to a temporary file beside `path`, then renamed. `attributes` are string attributes to add
-// ("pellucid:version").
-void writePicture(const std::string& path, const OpaqueFile& file, const Image<glm::vec4>& picture,
-                  const Image<std::uint8_t>& touched, const std::vector<ExtraLayer>& layers = {},
-                  const std::map<std::string, std::string>& attributes = {});
+// ("pellucid:version"). Half stays half: values beyond 65504 become 65504, which is noted. Returns the notes.
+std::vector<std::string> writePicture(const std::string& path, const OpaqueFile& file, const Image<glm::vec4>& picture,
+                                      const Image<std::uint8_t>& touched, const std::vector<ExtraLayer>& layers = {},
+                                      const std::map<std::string, std::string>& attributes = {});
 
-// A new single-part scanline ZIP file of float or half channels, for everything that has no input to imitate.
-void writeLayers(const std::string& path, const Window& display, const Window& data,
-                 const std::vector<ExtraLayer>& layers, const std::map<std::string, std::string>& attributes = {},
-                 const Camera* camera = nullptr, bool half = false);
+// A new single-part scanline ZIP file of float or half channels, for everything that has no input to imitate. Half
+// values are clamped as in writePicture. Returns the notes.
+std::vector<std::string> writeLayers(const std::string& path, const Window& display, const Window& data,
+                                     const std::vector<ExtraLayer>& layers,
+                                     const std::map<std::string, std::string>& attributes = {},
+                                     const Camera* camera = nullptr, bool half = false);
 
 // Checks a camera against what the file shows: the P / Position pass reprojected on pixel and depth, when there is one.
 // Also tries Blender's Z-up positions. Returns the median residual in pixels, or nothing when it cannot be checked.

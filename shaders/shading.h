@@ -11,7 +11,14 @@ using glm::intBitsToFloat;
 #define PLD_FN inline
 #define precise
 #include "shaders/shared/accumulate.glsl"
+#include "shaders/shared/environment.glsl"
+#include "shaders/shared/diffusion.glsl"
+#include "shaders/shared/hash.glsl"
+#include "shaders/shared/lights.glsl"
+#include "shaders/shared/material.glsl"
 #include "shaders/shared/numeric.glsl"
+#include "shaders/shared/occlusion.glsl"
+#include "shaders/shared/refraction.glsl"
 #include "shaders/shared/resolve.glsl"
 #include "shaders/shared/scattering.glsl"
 #include "shaders/shared/surface.glsl"

@@ -1,0 +1,52 @@
+#include <spdlog/sinks/stdout_sinks.h>
+
+#include <cstdio>
+#include <new>
+
+#include "composite/cli/messages.h"
+#include "composite/cli/verbs.h"
+#include "gbuffer/atomic_file.h"
+#include "gbuffer/errors.h"
+
+#ifndef PELLUCID_VERSION
+#define PELLUCID_VERSION "0.1.0"
+#endif
+
+namespace pellucid::cli {
+
+void setUpMessages() {
+  if (!spdlog::get("pellucid")) spdlog::set_default_logger(spdlog::stderr_logger_mt("pellucid"));
+  spdlog::set_pattern("pellucid: %v");
+}
+
+int run(int argc, const char* const* argv) {
+  setUpMessages();
+  cleanUpOnSignals();
+  CLI::App app{"Composites glass, smoke and foliage onto renders you already have.", "pellucid"};
+  app.set_version_flag("--version", PELLUCID_VERSION);
+  app.require_subcommand(1);
+  addComposite(app);
+  addAccumulate(app);
+  addResolve(app);
+  addInspect(app);
+  addCompare(app);
+  addFlatten(app);
+  addFragments(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& request) {  // --help, --version
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "pellucid: %s (see pellucid --help)\n", error.what());
+    return 2;
+  } catch (const Error& error) {
+    std::fprintf(stderr, "pellucid: error: %s\n", error.what());
+    return error.exitCode();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "pellucid: error: memory ran out\n");
+    return 6;
+  }
+}
+
+}  // namespace pellucid::cli

@@ -1,1 +1,5 @@
-int main() { return 0; }
+#include "composite/cli/verbs.h"
+
+int main(int argc, char** argv) {
+  return pellucid::cli::run(argc, argv);
+}

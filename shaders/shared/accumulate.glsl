@@ -64,7 +64,7 @@ PLD_FN OitSums layerSums(Layer layer, WeightSettings settings, int normalisation
   sums.numerator = numerator;
   sums.denominator = denominator;
   sums.opacity = hidden;
-  sums.depth = opticalDepth3(o);
+  sums.depth = opticalDepth3(o, passedBy(layer.coverage, layer.transmission));
   sums.light = light;
   sums.lightWeight = lightWeight;
   sums.opacityWeight = opacityWeight;

@@ -20,25 +20,31 @@ PLD_FN float meanOf(vec3 v) {
   return mean;
 }
 
-// -ln(1 - o), capped, accurate down to the smallest o. o in [0,1].
-PLD_FN float opticalDepth(float opacity) {
+// What one sample lets through, per channel: 1 - o, but without its cancellation near o = 1. [0,1]
+PLD_FN vec3 passedBy(float coverage, vec3 transmission) {
+  precise vec3 passed = vec3(1.0f - coverage) + coverage * transmission;
+  return passed;
+}
+
+// -ln(1 - o), capped, accurate at both ends.
+//   opacity, passed  o and 1 - o, each with its own relative precision, [0,1]
+PLD_FN float opticalDepth(float opacity, float passed) {
   if (opacity < 0.29f) {
     precise float s = opacity / (2.0f - opacity);
     precise float q = s * s;
     precise float thin = s * (2.0f + q * (0.666666667f + q * (0.4f + q * (0.285714286f + q * 0.222222222f))));
     return thin;
   }
-  precise float left = 1.0f - opacity;
-  if (left <= 0.0f) return PLD_OPAQUE_DEPTH;
-  precise float thick = min(-pldLog(left), PLD_OPAQUE_DEPTH);
-  return thick;
+  if (passed <= 0.0f) return PLD_OPAQUE_DEPTH;
+  precise float thick = min(-pldLog(passed), PLD_OPAQUE_DEPTH);
+  return max(thick, 0.0f);
 }
 
-PLD_FN vec3 opticalDepth3(vec3 opacity) {
+PLD_FN vec3 opticalDepth3(vec3 opacity, vec3 passed) {
   vec3 depth;
-  depth.r = opticalDepth(opacity.r);
-  depth.g = opticalDepth(opacity.g);
-  depth.b = opticalDepth(opacity.b);
+  depth.r = opticalDepth(opacity.r, passed.r);
+  depth.g = opticalDepth(opacity.g, passed.g);
+  depth.b = opticalDepth(opacity.b, passed.b);
   return depth;
 }
 

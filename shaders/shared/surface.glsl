@@ -59,6 +59,14 @@ PLD_FN vec3 transmissionAt(Surface surface, float cosEye) {
   return clamp(t, vec3(0.0f), vec3(1.0f));
 }
 
+// Microfacets whose normal lies at this cosine, GGX. 1/sr
+//   a2  roughness to the power of 4
+PLD_FN float ggxDensity(float cosHalf, float a2) {
+  precise float spread = cosHalf * cosHalf * (a2 - 1.0f) + 1.0f;
+  precise float d = a2 / (PLD_PI * spread * spread);
+  return d;
+}
+
 // Lambert + GGX (height-correlated Smith), times the cosine to the light. 1/sr
 PLD_FN vec3 reflectTowardsEye(Surface surface, vec3 normal, vec3 toEye, vec3 toLight) {
   float cosLight = dot(normal, toLight);
@@ -69,8 +77,7 @@ PLD_FN vec3 reflectTowardsEye(Surface surface, vec3 normal, vec3 toEye, vec3 toL
   float roughness = max(surface.roughness, PLD_MIN_ROUGHNESS);
   precise float a = roughness * roughness;
   precise float a2 = a * a;
-  precise float spread = cosHalf * cosHalf * (a2 - 1.0f) + 1.0f;
-  precise float d = a2 / (PLD_PI * spread * spread);
+  float d = ggxDensity(cosHalf, a2);
   precise float maskEye = cosLight * sqrt(cosEye * cosEye * (1.0f - a2) + a2);
   precise float maskLight = cosEye * sqrt(cosLight * cosLight * (1.0f - a2) + a2);
   precise float visible = 0.5f / (maskEye + maskLight);

@@ -1,0 +1,54 @@
+#include <nlohmann/json.hpp>
+
+#include "composite/cli/render.h"
+#include "composite/cli/results.h"
+#include "composite/cli/shot.h"
+#include "composite/cli/verbs.h"
+#include "gbuffer/planes_io.h"
+
+namespace pellucid::cli {
+namespace {
+
+struct AccumulateFlags {
+  std::string opaque, output;
+  std::vector<std::string> scenes;
+  ReadFlags read;
+  SceneFlags scene;
+  MethodFlags method;
+  RunFlags run;
+};
+
+void accumulate(const AccumulateFlags& flags) {
+  const Threads threads(flags.run.threads);
+  Stages stages;
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
+  PassSettings settings;
+  settings.surroundings = shot->surroundings;
+  flags.scene.applyTo(settings);
+  flags.method.applyTo(settings, shot->camera);
+  GlContext context(flags.scene.device);
+  TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
+  const OitPlanes planes = stages.time("transparent pass", [&] { return pass.accumulate(settings); });
+  stages.time("write", [&] { writePlanes(flags.output, planes); });
+  const PassStatistics& statistics = pass.statistics();
+  nlohmann::json report{{"output", flags.output}};
+  reportRun(flags.run, stages, {statistics.triangles, statistics.chunks, statistics.tiles, statistics.fragments},
+            context.description(), report);
+}
+
+}  // namespace
+
+void addAccumulate(CLI::App& app) {
+  auto flags = std::make_shared<AccumulateFlags>();
+  CLI::App* verb = app.add_subcommand("accumulate", "The transparent pass alone: sums of the layers at pixel centres");
+  verb->add_option("opaque", flags->opaque, "EXR with beauty and depth")->required();
+  verb->add_option("scenes", flags->scenes, "glTF or GLB with the transparent things")->required();
+  verb->add_option("-o,--output", flags->output, "EXR of planes to write")->required();
+  flags->read.addTo(*verb);
+  flags->scene.addTo(*verb);
+  flags->method.addTo(*verb, false);
+  flags->run.addTo(*verb);
+  verb->callback([flags] { accumulate(*flags); });
+}
+
+}  // namespace pellucid::cli

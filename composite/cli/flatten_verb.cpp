@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "composite/cli/results.h"
+#include "composite/cli/verbs.h"
+#include "composite/deep/flatten.h"
+
+namespace pellucid::cli {
+namespace {
+
+struct FlattenFlags {
+  std::vector<std::string> files;
+  std::string output, budget = "64M";
+  RunFlags run;
+};
+
+ExtraLayer layersOf(const FlatPicture& flat) {
+  const int width = flat.data.width(), height = flat.data.height();
+  const auto plane = [&](auto&& value) {
+    Image<float> image(width, height);
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] = value(i);
+    return image;
+  };
+  ExtraLayer layer;
+  const char* colours[] = {"R", "G", "B"};
+  for (int c = 0; c < 3; ++c) {
+    layer.channels.emplace_back(colours[c], plane([&](std::size_t i) { return flat.light[i][c]; }));
+    if (flat.colouredOpacity)
+      layer.channels.emplace_back(std::string("A") + colours[c], plane([&](std::size_t i) { return flat.opacity[i][c]; }));
+  }
+  layer.channels.emplace_back("A", plane([&](std::size_t i) { return flat.opacity[i].w; }));
+  layer.channels.emplace_back("Z", plane([&](std::size_t i) { return flat.frontZ[i]; }));
+  return layer;
+}
+
+void flattenVerb(const FlattenFlags& flags) {
+  const Threads threads(flags.run.threads);
+  Stages stages;
+  // A sample takes its channels as floats: seven at most, and its share of the pointers.
+  const std::uint64_t most = parseBytes(flags.budget, "--budget") / 32;
+  const FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most); });
+  if (flat.oddities.notFinite)
+    spdlog::info("{} deep samples are not finite and were skipped", flat.oddities.notFinite);
+  if (flat.oddities.outOfRange)
+    spdlog::info("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
+  stages.time("write", [&] { writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}); });
+  nlohmann::json report{{"output", flags.output}, {"samples", flat.samples}};
+  RenderCounts counts;
+  counts.fragments = flat.samples;
+  reportRun(flags.run, stages, counts, "CPU", report);
+}
+
+}  // namespace
+
+void addFlatten(CLI::App& app) {
+  auto flags = std::make_shared<FlattenFlags>();
+  CLI::App* verb = app.add_subcommand("flatten", "Merge deep EXR files and composite their samples, exactly");
+  verb->add_option("files", flags->files, "Deep EXR files, in any order")->required();
+  verb->add_option("-o,--output", flags->output, "Flat EXR to write")->required();
+  verb->add_option("--budget", flags->budget, "Deep samples held at once, in bytes (64M, 2G)")->capture_default_str();
+  flags->run.addTo(*verb);
+  verb->callback([flags] { flattenVerb(*flags); });
+}
+
+}  // namespace pellucid::cli

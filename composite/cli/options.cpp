@@ -1,0 +1,187 @@
+#include "composite/cli/options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "gbuffer/errors.h"
+
+namespace pellucid::cli {
+namespace {
+
+std::vector<double> parseNumbers(const std::string& text, char separator, std::size_t count, const std::string& flag,
+                                 const std::string& form) {
+  std::vector<double> numbers;
+  const char* at = text.data();
+  const char* end = text.data() + text.size();
+  while (at <= end) {
+    double value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) break;
+    numbers.push_back(value);
+    if (next == end && numbers.size() == count) return numbers;
+    if (next == end || *next != separator) break;
+    at = next + 1;
+  }
+  throw UsageError(fmt::format("{}: found '{}', expected {}", flag, text, form));
+}
+
+struct NamedWeight {
+  const char* name;
+  int kind;
+};
+constexpr NamedWeight kWeights[] = {{"eq5", shading::PLD_WEIGHT_EQ5},     {"eq7", shading::PLD_WEIGHT_EQ7},
+                                    {"eq8", shading::PLD_WEIGHT_EQ8},     {"eq9", shading::PLD_WEIGHT_EQ9},
+                                    {"eq10", shading::PLD_WEIGHT_EQ10},   {"eq7z", shading::PLD_WEIGHT_EQ7Z},
+                                    {"eq8z", shading::PLD_WEIGHT_EQ8Z},   {"eq9z", shading::PLD_WEIGHT_EQ9Z},
+                                    {"eq10z", shading::PLD_WEIGHT_EQ10Z}, {"uniform", shading::PLD_WEIGHT_UNIFORM}};
+
+SubmissionOrder parseOrder(const std::string& text) {
+  SubmissionOrder order;
+  if (text == "file") return order;
+  if (text == "reverse") {
+    order.kind = SubmissionOrder::reverse;
+    return order;
+  }
+  const std::string key = "shuffle:";
+  if (text.rfind(key, 0) == 0 && text.size() > key.size()) {
+    order.kind = SubmissionOrder::shuffle;
+    const auto [next, error] = std::from_chars(text.data() + key.size(), text.data() + text.size(), order.seed);
+    if (error == std::errc() && next == text.data() + text.size()) return order;
+  }
+  throw UsageError(fmt::format("--order: found '{}', expected file, reverse or shuffle:SEED", text));
+}
+
+}  // namespace
+
+std::size_t parseBytes(const std::string& text, const std::string& flag) {
+  std::size_t value = 0;
+  const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(next, text.data() + text.size());
+  const int shift = unit.empty() ? 0 : unit == "K" ? 10 : unit == "M" ? 20 : unit == "G" ? 30 : -1;
+  if (error != std::errc() || shift < 0 || value == 0 || value > (SIZE_MAX >> shift))
+    throw UsageError(fmt::format("{}: found '{}', expected bytes such as 64M or 2G", flag, text));
+  return value << shift;
+}
+
+glm::vec3 parseColour(const std::string& text, const std::string& flag) {
+  const auto numbers = parseNumbers(text, ',', 3, flag, "three numbers R,G,B");
+  for (const double number : numbers)
+    if (number < 0) throw UsageError(fmt::format("{}: found '{}', expected no negative light", flag, text));
+  return glm::vec3(static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2]));
+}
+
+std::pair<double, double> parseRange(const std::string& text, const std::string& flag) {
+  const auto numbers = parseNumbers(text, ':', 2, flag, "NEAR:FAR in metres");
+  if (numbers[0] <= 0 || numbers[1] <= numbers[0])
+    throw UsageError(fmt::format("{}: found '{}', expected 0 < NEAR < FAR", flag, text));
+  return {numbers[0], numbers[1]};
+}
+
+void ReadFlags::addTo(CLI::App& verb) {
+  verb.add_option("--preset", preset, "Producer of the EXR")
+      ->check(CLI::IsMember({"auto", "blender"}))
+      ->capture_default_str();
+  verb.add_option("--beauty", beauty, "Layer of the beauty, such as ViewLayer.Combined");
+  verb.add_option("--depth", depth, "Channel of the depth, such as ViewLayer.Depth.Z");
+  verb.add_option("--depth-kind", depthKind, "What the depth means")
+      ->check(CLI::IsMember({"planar", "ray", "inverse", "device"}))
+      ->capture_default_str();
+  verb.add_option("--far", farValue, "Depth, in the file's unit, from which nothing was hit");
+  verb.add_option("--unit", unit, "Metres in one scene unit")->check(CLI::PositiveNumber)->capture_default_str();
+}
+
+ReadOptions ReadFlags::options() const {
+  ReadOptions options;
+  options.preset = preset;
+  options.beautyLayer = beauty;
+  options.depthChannel = depth;
+  options.depthKind = depthKind;
+  options.farValue = farValue;
+  options.metresPerUnit = unit;
+  return options;
+}
+
+void SceneFlags::addTo(CLI::App& verb) {
+  verb.add_option("--camera", camera, "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
+  verb.add_option("--environment", environment, "Constant surrounding radiance R,G,B; without it the sky's median");
+  verb.add_option("--set", overrides,
+                  "MATERIAL.key=value: thin, collimation, coverage, additive, lowResolution, castsShadow")
+      ->allow_extra_args(false);
+  verb.add_option("--lumens-per-watt", lumensPerWatt, "glTF lights are photometric, renders are not")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--texture-filter", textureFilter)
+      ->check(CLI::IsMember({"mipmap", "bilinear", "nearest"}))
+      ->capture_default_str();
+  verb.add_option("--mask", mask, "Edges of alpha-tested materials")
+      ->check(CLI::IsMember({"smooth", "hard"}))
+      ->capture_default_str();
+  verb.add_option("--order", order, "Submission order: file, reverse or shuffle:SEED")->capture_default_str();
+  verb.add_option("--budget", budget, "Geometry resident at once, in bytes (64M, 2G)")->capture_default_str();
+  verb.add_option("--device", device, "EGL device by number, see inspect --devices");
+}
+
+SceneOptions SceneFlags::options(double metresPerUnit) const {
+  SceneOptions options;
+  options.metresPerUnit = metresPerUnit;
+  options.lumensPerWatt = lumensPerWatt;
+  options.overrides = overrides;
+  return options;
+}
+
+void SceneFlags::applyTo(PassSettings& settings) const {
+  settings.filter = textureFilter == "mipmap"     ? TextureFilter::mipmap
+                    : textureFilter == "bilinear" ? TextureFilter::bilinear
+                                                  : TextureFilter::nearest;
+  settings.mask = mask == "smooth" ? MaskEdge::smooth : MaskEdge::hard;
+  settings.order = parseOrder(order);
+  settings.budgetBytes = parseBytes(budget, "--budget");
+}
+
+void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
+  std::vector<std::string> methods{"phenomenological"};
+  if (listsToo) methods.push_back("over");
+  verb.add_option("--method", method)->check(CLI::IsMember(methods))->capture_default_str();
+  verb.add_option("--precision", precision)->check(CLI::IsMember({"float"}))->capture_default_str();
+  verb.add_option("--normalisation", normalisation)
+      ->check(CLI::IsMember({"spectral", "published"}))
+      ->capture_default_str();
+  verb.add_option("--weight", weight, "eq5, eq7..eq10, eq7z..eq10z, power:K or uniform")->capture_default_str();
+  verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for eq5 and eq10");
+}
+
+void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
+  settings.normalisation =
+      normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED : shading::PLD_NORMALISE_SPECTRAL;
+  settings.weight.kind = -1;
+  for (const NamedWeight& named : kWeights)
+    if (weight == named.name) settings.weight.kind = named.kind;
+  if (weight.rfind("power:", 0) == 0) {
+    settings.weight.kind = shading::PLD_WEIGHT_POWER;
+    settings.weight.exponent =
+        static_cast<float>(parseNumbers(weight.substr(6), ' ', 1, "--weight", "power:K with a number K")[0]);
+    if (settings.weight.exponent < 0.0f)
+      throw UsageError(
+          fmt::format("--weight: found '{}', expected K >= 0: farther layers must not weigh more", weight));
+  }
+  if (settings.weight.kind < 0)
+    throw UsageError(fmt::format(
+        "--weight: found '{}', expected eq5, eq7, eq8, eq9, eq10, eq7z, eq8z, eq9z, eq10z, power:K or uniform",
+        weight));
+  double rangeNear = camera.rangeNear > 0 ? camera.rangeNear : 0.1;
+  double rangeFar = camera.rangeFar > rangeNear ? camera.rangeFar : rangeNear * 1e4;
+  if (!weightRange.empty()) std::tie(rangeNear, rangeFar) = parseRange(weightRange, "--weight-range");
+  settings.weight.rangeNear = static_cast<float>(rangeNear);
+  settings.weight.rangeFar = static_cast<float>(rangeFar);
+}
+
+void RunFlags::addTo(CLI::App& verb) {
+  verb.add_option("--threads", threads, "0 uses every core")->check(CLI::NonNegativeNumber);
+  verb.add_flag("--stats", stats, "Print counts and the time of every stage");
+  verb.add_flag("--json", json, "Print results as JSON");
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,52 @@
+// The command line's flags, as the rooms understand them. Each verb adds the groups it honours, and no other.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine_bridge/gl/transparent_pass.h"
+#include "engine_bridge/scene/gltf.h"
+#include "gbuffer/opaque_io.h"
+
+namespace pellucid::cli {
+
+struct ReadFlags {
+  std::string preset = "auto", beauty, depth, depthKind = "planar";
+  std::optional<double> farValue;
+  double unit = 1.0;
+  void addTo(CLI::App& verb);
+  ReadOptions options() const;
+};
+
+struct SceneFlags {
+  std::string camera, environment;
+  std::vector<std::string> overrides;
+  double lumensPerWatt = 683.0;
+  std::string textureFilter = "mipmap", mask = "smooth", order = "file", budget = "256M";
+  int device = -1;
+  void addTo(CLI::App& verb);
+  SceneOptions options(double metresPerUnit) const;
+  void applyTo(PassSettings& settings) const;  // throws UsageError
+};
+
+struct MethodFlags {
+  std::string method = "phenomenological", precision = "float", normalisation = "spectral", weight = "eq5", weightRange;
+  void addTo(CLI::App& verb, bool listsToo);
+  bool isOver() const { return method == "over"; }
+  // The range comes from the flag, else from the camera, else 0.1:1000. Throws UsageError.
+  void applyTo(PassSettings& settings, const Camera& camera) const;
+};
+
+struct RunFlags {
+  int threads = 0;
+  bool stats = false, json = false;
+  void addTo(CLI::App& verb);
+};
+
+std::size_t parseBytes(const std::string& text, const std::string& flag);                // "64M", "2G", "1048576"
+glm::vec3 parseColour(const std::string& text, const std::string& flag);                 // "R,G,B"
+std::pair<double, double> parseRange(const std::string& text, const std::string& flag);  // "NEAR:FAR"
+
+}  // namespace pellucid::cli

@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "composite/cli/results.h"
+#include "composite/cli/shot.h"
+#include "composite/cli/verbs.h"
+#include "composite/resolve.h"
+#include "gbuffer/errors.h"
+#include "gbuffer/planes_io.h"
+
+namespace pellucid::cli {
+namespace {
+
+struct ResolveFlags {
+  std::string opaque, output;
+  std::vector<std::string> planes, layers;
+  ReadFlags read;
+  RunFlags run;
+  bool selfModulation = false;
+};
+
+std::string windowText(const Window& window) {
+  return fmt::format("({}, {})-({}, {})", window.x0, window.y0, window.x1 - 1, window.y1 - 1);
+}
+
+void resolveVerb(const ResolveFlags& flags) {
+  const Threads threads(flags.run.threads);
+  Stages stages;
+  const OpaqueFile opaque = stages.time("read picture", [&] { return readOpaque(flags.opaque, flags.read.options()); });
+  say(opaque.notes);
+  OitPlanes planes = stages.time("read planes", [&] { return readPlanes(flags.planes[0]); });
+  for (std::size_t i = 1; i < flags.planes.size(); ++i)
+    stages.time("read planes", [&] { mergePlanes(planes, readPlanes(flags.planes[i])); });
+  if (planes.data != opaque.gbuffer.data)
+    throw MeaningError(fmt::format("{}: found data window {}, expected {} of {}", flags.planes[0],
+                                   windowText(planes.data), windowText(opaque.gbuffer.data), flags.opaque));
+  ResolveSettings settings;
+  settings.selfModulation = flags.selfModulation;
+  const Veil veil = stages.time("resolve", [&] { return resolve(planes, settings); });
+  const Picture picture = stages.time("compose", [&] { return compose(veil, opaque.gbuffer); });
+  stages.time("write", [&] {
+    writePicture(flags.output, opaque, picture.rgba, picture.touched, requestedLayers(flags.layers, veil),
+                 {{"pellucid:method", planes.info.method}});
+  });
+  nlohmann::json report{{"output", flags.output}};
+  reportRun(flags.run, stages, {}, "CPU", report);
+}
+
+}  // namespace
+
+void addResolve(CLI::App& app) {
+  auto flags = std::make_shared<ResolveFlags>();
+  CLI::App* verb = app.add_subcommand("resolve", "The compositing step alone: planes over an opaque render");
+  verb->add_option("opaque", flags->opaque, "EXR with beauty and depth")->required();
+  verb->add_option("planes", flags->planes, "EXR of planes; several are added")->required();
+  verb->add_option("-o,--output", flags->output, "EXR to write")->required();
+  flags->read.addTo(*verb);
+  flags->run.addTo(*verb);
+  verb->add_flag("--self-modulation", flags->selfModulation, "PT17 eq. 14, a heuristic for --normalisation published");
+  addLayersOption(*verb, flags->layers);
+  verb->callback([flags] { resolveVerb(*flags); });
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,79 @@
+#include "composite/cli/results.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "gbuffer/threads.h"
+
+namespace pellucid::cli {
+
+struct Threads::Impl {
+  std::unique_ptr<tbb::global_control> control;
+};
+
+Threads::Threads(int count) : impl_(std::make_unique<Impl>()) {
+  if (count > 0) {
+    impl_->control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                           static_cast<std::size_t>(count));
+    setenv("LP_NUM_THREADS", std::to_string(count).c_str(), 1);
+  }
+  setExrThreads(count > 0 ? count : tbb::info::default_concurrency());
+}
+
+Threads::~Threads() = default;
+
+void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
+  verb.add_option("--layers", layers, "Layers to add: transparent, transmission, depth")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"transparent", "transmission", "depth"}));
+}
+
+std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, const Veil& veil) {
+  const int width = veil.touched.width(), height = veil.touched.height();
+  std::vector<ExtraLayer> result;
+  const auto plane = [&](auto&& value) {
+    Image<float> image(width, height);
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] = value(i);
+    return image;
+  };
+  const char* names[] = {"R", "G", "B"};
+  for (const std::string& name : layers) {
+    ExtraLayer layer{name == "depth" ? "transparent" : name, {}};
+    if (name == "transparent") {
+      for (int c = 0; c < 3; ++c)
+        layer.channels.emplace_back(names[c], plane([&](std::size_t i) { return veil.light[i][c]; }));
+      layer.channels.emplace_back("A", plane([&](std::size_t i) {
+                                    return veil.touched[i] ? shading::alphaOver(veil.transmission[i], 0.0f) : 0.0f;
+                                  }));
+    } else if (name == "transmission") {
+      for (int c = 0; c < 3; ++c)
+        layer.channels.emplace_back(names[c], plane([&](std::size_t i) { return veil.transmission[i][c]; }));
+    } else {
+      layer.channels.emplace_back("Z", plane([&](std::size_t i) { return veil.frontZ[i]; }));
+    }
+    result.push_back(std::move(layer));
+  }
+  return result;
+}
+
+void reportRun(const RunFlags& flags, const Stages& stages, const RenderCounts& counts, const std::string& device,
+               nlohmann::json& report) {
+  if (flags.stats) {
+    nlohmann::json seconds = nlohmann::json::object();
+    for (const auto& [name, value] : stages.seconds()) seconds[name] = value;
+    report["statistics"] = {{"device", device},      {"triangles", counts.triangles}, {"chunks", counts.chunks},
+                            {"tiles", counts.tiles}, {"fragments", counts.fragments}, {"seconds", seconds}};
+    if (!flags.json) {
+      fmt::print("device      {}\ntriangles   {}\nchunks      {}\ntiles       {}\nfragments   {}\n", device,
+                 counts.triangles, counts.chunks, counts.tiles, counts.fragments);
+      for (const auto& [name, value] : stages.seconds()) fmt::print("{:<24}{:8.1f} ms\n", name, 1e3 * value);
+    }
+  }
+  if (flags.json) fmt::print("{}\n", report.dump(2));
+}
+
+}  // namespace pellucid::cli

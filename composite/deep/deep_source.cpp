@@ -1,0 +1,197 @@
+#include "composite/deep/deep_source.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "gbuffer/errors.h"
+#include "shaders/shading.h"
+
+namespace pellucid {
+namespace {
+
+std::string windowText(const Window& w) {
+  return fmt::format("({}, {})-({}, {})", w.x0, w.y0, w.x1 - 1, w.y1 - 1);
+}
+
+// Integer hash of where a sample comes from: the same whatever the bands and threads.
+std::uint32_t identityOf(std::uint32_t source, int x, int y, std::uint64_t sample) {
+  std::uint32_t h = source * 0x9e3779b9u ^ static_cast<std::uint32_t>(x) * 0x85ebca6bu ^
+                    static_cast<std::uint32_t>(y) * 0xc2b2ae35u ^ static_cast<std::uint32_t>(sample) * 0x27d4eb2fu;
+  h = (h ^ (h >> 16)) * 0x7feb352du;
+  h = (h ^ (h >> 15)) * 0x846ca68bu;
+  return h ^ (h >> 16);
+}
+
+std::size_t pixelOf(const Window& window, int x, int y) {
+  return static_cast<std::size_t>(y - window.y0) * static_cast<std::size_t>(window.width()) +
+         static_cast<std::size_t>(x - window.x0);
+}
+
+bool contains(const Window& window, int x, int y) {
+  return x >= window.x0 && x < window.x1 && y >= window.y0 && y < window.y1;
+}
+
+}  // namespace
+
+DeepSource::DeepSource(const std::string& path, double metresPerUnit, const GBuffer& shot, std::uint32_t index)
+    : path_(path),
+      metresPerUnit_(metresPerUnit),
+      index_(index),
+      channels_(resolveDeep(path)),
+      reader_(path, channels_.part, channels_.names) {
+  if (reader_.display() != shot.display)
+    throw MeaningError(fmt::format("{}: found display window {}, expected {} of the opaque picture", path,
+                                   windowText(reader_.display()), windowText(shot.display)));
+}
+
+std::vector<std::string> DeepSource::notes() const {
+  std::vector<std::string> notes;
+  if (oddities_.notFinite)
+    notes.push_back(fmt::format("{}: {} deep samples are not finite and were skipped", path_, oddities_.notFinite));
+  if (oddities_.outOfRange)
+    notes.push_back(fmt::format("{}: {} deep samples have an opacity outside 0 to 1, which was clamped", path_,
+                                oddities_.outOfRange));
+  return notes;
+}
+
+// One band: the rows of every source beside the lists, pixel by pixel.
+class DeepMerge {
+ public:
+  DeepMerge(const FragmentLists& lists, std::vector<std::unique_ptr<DeepSource>>& sources, const GBuffer& shot,
+            VolumeRule rule)
+      : lists_(lists), sources_(sources), shot_(shot), rule_(rule) {}
+
+  // Reads rows from y on and merges them. Returns the row to go on from.
+  int band(int y, std::uint64_t most, FragmentLists& merged) {
+    int end = lists_.window.y1;
+    rows_.clear();
+    for (const auto& source : sources_) {
+      const Window& data = source->reader_.data();
+      const int from = std::max(y, data.y0), to = std::min(end, data.y1);
+      rows_.push_back(from < to ? source->reader_.read(from, to, most) : DeepRows{});
+      // Later sources follow the first that had to stop early.
+      if (from < to) end = std::min(end, rows_.back().window.y1);
+    }
+    merged.window = {lists_.window.x0, y, lists_.window.x1, end};
+    merged.solid = Image<glm::vec4>(merged.window.width(), merged.window.height());
+    const auto height = static_cast<std::size_t>(merged.window.height());
+    const auto width = static_cast<std::size_t>(merged.window.width());
+    std::vector<std::vector<Fragment>> rowFragments(height);
+    std::vector<std::vector<std::uint64_t>> rowCounts(height);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height), [&](const tbb::blocked_range<std::size_t>& range) {
+      std::vector<DeepOddities> oddities(sources_.size());
+      Scratch scratch;
+      for (std::size_t r = range.begin(); r != range.end(); ++r) {
+        rowCounts[r].reserve(width);
+        for (int x = merged.window.x0; x < merged.window.x1; ++x) {
+          const std::size_t had = rowFragments[r].size();
+          const int py = y + static_cast<int>(r);
+          merged.solid.at(x - merged.window.x0, static_cast<int>(r)) = pixel(x, py, rowFragments[r], scratch, oddities);
+          rowCounts[r].push_back(rowFragments[r].size() - had);
+        }
+      }
+      const std::lock_guard lock(mutex_);
+      for (std::size_t s = 0; s < sources_.size(); ++s) sources_[s]->oddities_.add(oddities[s]);
+    });
+    merged.offsets.assign(1, 0);
+    merged.fragments.clear();
+    for (std::size_t r = 0; r < height; ++r) {
+      for (const std::uint64_t count : rowCounts[r]) merged.offsets.push_back(merged.offsets.back() + count);
+      merged.fragments.insert(merged.fragments.end(), rowFragments[r].begin(), rowFragments[r].end());
+      std::vector<Fragment>().swap(rowFragments[r]);
+    }
+    return end;
+  }
+
+ private:
+  struct Scratch {
+    std::vector<DeepSample> volumes;
+    std::vector<double> cuts;
+  };
+
+  // Appends the pixel's fragments, returns its solid.
+  glm::vec4 pixel(int x, int y, std::vector<Fragment>& out, Scratch& scratch, std::vector<DeepOddities>& oddities) {
+    const std::size_t own = pixelOf(lists_.window, x, y), had = out.size();
+    glm::vec4 solid = lists_.solid.at(x - lists_.window.x0, y - lists_.window.y0);
+    out.insert(out.end(), lists_.fragments.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own]),
+               lists_.fragments.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own + 1]));
+    const double surface = static_cast<double>(shot_.viewZ.at(x - shot_.data.x0, y - shot_.data.y0)) *
+                           (1.0 + static_cast<double>(shot_.depthPrecision));
+    scratch.volumes.clear();
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      const DeepSource& source = *sources_[s];
+      if (!contains(rows_[s].window, x, y)) continue;
+      const std::size_t index = pixelOf(rows_[s].window, x, y);
+      const std::uint64_t first = rows_[s].offsets[index];
+      for (std::uint64_t i = first; i < rows_[s].offsets[index + 1]; ++i) {
+        DeepSample sample;
+        if (!sampleAt(source.channels_, rows_[s], i, source.metresPerUnit_, sample, oddities[s])) continue;
+        if (!(sample.z > 0.0) || sample.z > surface) continue;  // behind the camera or the surface
+        if (sample.isVolume() && sample.zBack > surface) sample = partOfVolume(sample, sample.z, surface);
+        const bool opaque = sample.opacity.x >= 1.0 && sample.opacity.y >= 1.0 && sample.opacity.z >= 1.0;
+        if (opaque) {
+          // Opaque from its very front on. Ties: the larger, channel by channel, whatever the order.
+          const auto z = static_cast<float>(sample.z);
+          if (z < solid.a)
+            solid = glm::vec4(glm::vec3(sample.light), z);
+          else if (z == solid.a)
+            solid = glm::max(solid, glm::vec4(glm::vec3(sample.light), z));
+          continue;
+        }
+        if (sample.isVolume() && rule_ == VolumeRule::split) {
+          scratch.volumes.push_back(sample);
+          continue;
+        }
+        Fragment fragment = source.channels_.hasRecord()
+                                ? recordAt(source.channels_, rows_[s], i, source.metresPerUnit_)
+                                : fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
+        fragment.identity = identityOf(source.index_, x, y, i - first);
+        out.push_back(fragment);
+      }
+    }
+    std::erase_if(scratch.volumes, [&](const DeepSample& v) { return v.z > static_cast<double>(solid.a); });
+    if (!scratch.volumes.empty()) splitVolumes(scratch, out, had, static_cast<double>(solid.a), x, y);
+    const auto behind = std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(had), out.end(),
+                                       [&](const Fragment& fragment) { return fragment.z > solid.a; });
+    out.erase(behind, out.end());
+    return solid;
+  }
+
+  void splitVolumes(Scratch& scratch, std::vector<Fragment>& out, std::size_t had, double solidZ, int x, int y) const {
+    for (DeepSample& volume : scratch.volumes)
+      if (volume.zBack > solidZ && volume.z < solidZ) volume = partOfVolume(volume, volume.z, solidZ);
+    scratch.cuts.clear();
+    for (std::size_t i = had; i < out.size(); ++i) scratch.cuts.push_back(static_cast<double>(out[i].z));
+    std::sort(scratch.cuts.begin(), scratch.cuts.end());
+    std::uint64_t piece = 0;
+    visitTidy(scratch.volumes, scratch.cuts, [&](const DeepSample& sample) {
+      Fragment fragment = fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
+      fragment.identity = identityOf(0xffffffffu, x, y, piece++);
+      out.push_back(fragment);
+    });
+  }
+
+  const FragmentLists& lists_;
+  std::vector<std::unique_ptr<DeepSource>>& sources_;
+  const GBuffer& shot_;
+  VolumeRule rule_;
+  std::vector<DeepRows> rows_;
+  std::mutex mutex_;
+};
+
+void mergeDeep(const FragmentLists& lists, std::vector<std::unique_ptr<DeepSource>>& sources, const GBuffer& shot,
+               VolumeRule rule, std::uint64_t most, const std::function<void(const FragmentLists&)>& band) {
+  DeepMerge merge(lists, sources, shot, rule);
+  FragmentLists merged;
+  for (int y = lists.window.y0; y < lists.window.y1;) {
+    y = merge.band(y, most, merged);
+    band(merged);
+  }
+}
+
+}  // namespace pellucid

@@ -1,0 +1,43 @@
+// Deep files as transparent layers: their samples join the fragment lists of a shot.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "composite/deep/channels.h"
+#include "gbuffer/fragments.h"
+#include "gbuffer/gbuffer.h"
+
+namespace pellucid {
+
+class DeepSource {
+ public:
+  // Throws what resolveDeep and DeepReader throw, and MeaningError when the display window is not the shot's.
+  DeepSource(const std::string& path, double metresPerUnit, const GBuffer& shot, std::uint32_t index);
+  const std::string& path() const { return path_; }
+  std::vector<std::string> notes() const;  // what was skipped or clamped so far
+
+ private:
+  friend class DeepMerge;
+  std::string path_;
+  double metresPerUnit_;
+  std::uint32_t index_;
+  DeepChannels channels_;
+  DeepReader reader_;
+  DeepOddities oddities_;
+};
+
+// How a volume sample becomes fragments, which have no thickness.
+enum class VolumeRule {
+  split,     // at every other sample's depth: sorted compositing of the pieces is exact
+  midDepth,  // one fragment, half way: what order-independent methods take
+};
+
+// Adds the samples that lie in front of the G-buffer and of solids to the lists, and hands on the result in bands of
+// whole rows of the lists' window with about `most` deep samples each. An opaque sample becomes the pixel's solid. A
+// volume that the G-buffer's surface or a solid cuts keeps the part before it.
+void mergeDeep(const FragmentLists& lists, std::vector<std::unique_ptr<DeepSource>>& sources, const GBuffer& shot,
+               VolumeRule rule, std::uint64_t most, const std::function<void(const FragmentLists&)>& band);
+
+}  // namespace pellucid

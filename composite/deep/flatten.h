@@ -1,0 +1,29 @@
+// A deep file to a flat picture, exactly: any order, overlapping volumes, coincident samples, coloured opacity. Streamed
+// by bands of scanlines, so that memory does not follow the file's size.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "composite/deep/channels.h"
+#include "gbuffer/image.h"
+
+namespace pellucid {
+
+struct FlatPicture {
+  Window display, data;
+  Image<glm::vec3> light;    // premultiplied, scene-linear
+  Image<glm::vec4> opacity;  // per channel, and A
+  Image<float> frontZ;       // nearest sample, the file's unit, +inf where there is none
+  bool colouredOpacity = false;
+  std::uint64_t samples = 0;
+  DeepOddities oddities;
+};
+
+// Merges the files' samples (same windows) and composites them front to back.
+//   most  deep samples held at once, beyond one row's
+// Throws what resolveDeep and DeepReader throw, MeaningError for windows that differ.
+FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most = std::uint64_t{1} << 21);
+
+}  // namespace pellucid

@@ -1,0 +1,17 @@
+// Fragment lists to sums, in the order given, as GL's blending makes them.
+#pragma once
+#include "gbuffer/accum.h"
+#include "gbuffer/fragments.h"
+
+namespace pellucid {
+
+// Adds every fragment of the lists to `planes`, whose window must contain theirs, in list order; solid and frontZ
+// included. Solid fragments in a list, and fragments behind the solid, are not added.
+void foldFragments(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation,
+                   OitPlanes& planes);
+
+// Only what scattering needs of the same: refraction, diffuseZ, the depth of the refracting layers in light.a, and the
+// solid plane. Planes stay without refraction when no fragment refracts or diffuses. foldFragments() does it too.
+void foldScattering(const FragmentLists& lists, OitPlanes& planes);
+
+}  // namespace pellucid

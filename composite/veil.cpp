@@ -1,0 +1,41 @@
+#include "composite/veil.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace pellucid {
+
+Veil::Veil(int width, int height)
+    : light(width, height, glm::vec3(0.0f)),
+      transmission(width, height, glm::vec3(1.0f)),
+      frontZ(width, height, std::numeric_limits<float>::infinity()),
+      touched(width, height, 0) {}
+
+void VeilMean::add(const Veil& sample) {
+  ++count_;
+  if (count_ == 1) {
+    sum_ = sample;
+    return;
+  }
+  for (std::size_t i = 0; i < sum_.touched.size(); ++i) {
+    sum_.light[i] += sample.light[i];
+    sum_.transmission[i] += sample.transmission[i];
+    sum_.frontZ[i] = std::min(sum_.frontZ[i], sample.frontZ[i]);
+    sum_.touched[i] |= sample.touched[i];
+  }
+}
+
+Veil VeilMean::finish() const {
+  if (count_ == 0) throw std::logic_error("VeilMean: no sample was added");
+  Veil mean = sum_;
+  const float share = 1.0f / static_cast<float>(count_);
+  if (count_ > 1)
+    for (std::size_t i = 0; i < mean.touched.size(); ++i) {
+      mean.light[i] *= share;
+      mean.transmission[i] *= share;
+    }
+  return mean;
+}
+
+}  // namespace pellucid

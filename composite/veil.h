@@ -1,0 +1,32 @@
+// What transparency does to a picture before it meets one: picture = light + transmission * background.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "gbuffer/image.h"
+
+namespace pellucid {
+
+// Planes of a data window. Where touched is 0 nothing transparent lies and the other planes mean nothing.
+struct Veil {
+  Image<glm::vec3> light;         // premultiplied radiance of the layers and of the solid behind them, >= 0
+  Image<glm::vec3> transmission;  // of the background, [0,1] per channel; 0 behind a solid
+  Image<float> frontZ;            // nearest layer or solid, planar metres, +inf for none
+  Image<std::uint8_t> touched;
+
+  Veil() = default;
+  Veil(int width, int height);
+};
+
+// The mean of equally weighted samples, added in the order they come: N jittered passes become one antialiased veil.
+class VeilMean {
+ public:
+  void add(const Veil& sample);
+  Veil finish() const;  // at least one sample must have been added
+
+ private:
+  Veil sum_;
+  int count_ = 0;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,111 @@
+#include "engine_bridge/embree/surface_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid::rays {
+namespace {
+
+// Carries normals; unlike the inverse transpose it stands a flattened (singular) matrix.
+glm::dmat3 cofactors(const glm::dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+}  // namespace
+
+std::vector<Placed> placeInstances(const Scene& scene, const Camera& camera) {
+  std::vector<Placed> all;
+  all.reserve(scene.instances.size());
+  for (const Instance& instance : scene.instances) {
+    Placed placed;
+    placed.viewFromObject = camera.viewFromWorld * instance.worldFromObject;
+    const glm::dmat3 linear(placed.viewFromObject);
+    const double volume = glm::determinant(linear);
+    glm::dmat3 normal = cofactors(linear);
+    double largest = 0;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) largest = std::max(largest, std::abs(normal[c][r]));
+    if (largest > 0) normal *= (volume < 0 ? -1.0 : 1.0) / largest;
+    placed.normalFromObject = glm::mat3(normal);
+    placed.thicknessScale = static_cast<float>(std::cbrt(std::abs(volume)));
+    all.push_back(placed);
+  }
+  return all;
+}
+
+Attributes attributesAt(const Primitive& primitive, const Placed& placed, std::size_t triangle,
+                        const TriangleHit& hit) {
+  Attributes result{glm::vec3(0.0f), {glm::vec2(0.0f), glm::vec2(0.0f)}, glm::vec4(0.0f)};
+  glm::vec3 normal(0.0f);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vertex& vertex = primitive.vertices[primitive.indices[3 * triangle + i]];
+    const float weight = static_cast<float>(hit.weight[i]);
+    normal += weight * vertex.normal;
+    result.uv[0] += weight * vertex.uv[0];
+    result.uv[1] += weight * vertex.uv[1];
+    result.colour += weight * vertex.colour;
+  }
+  result.normal = placed.normalFromObject * normal;
+  return result;
+}
+
+SurfaceSampler::SurfaceSampler(const Scene& scene, TexelFilter filter) : scene_(scene), filter_(filter) {
+  for (const Material& material : scene.materials) blocks_.push_back(materialBlock(material));
+}
+
+glm::vec4 SurfaceSampler::texel(const TextureRef& reference, int slot, const MaterialBlock& block,
+                                const Attributes& attributes) const {
+  const glm::vec4 u = block.uvTransforms[2 * slot], v = block.uvTransforms[2 * slot + 1];
+  const glm::vec3 uv1(attributes.uv[reference.texCoord == 0 ? 0 : 1], 1.0f);
+  const glm::vec2 uv(glm::dot(glm::vec3(u), uv1), glm::dot(glm::vec3(v), uv1));
+  return sampleTexture(scene_.textures[static_cast<std::size_t>(reference.texture)], uv, filter_);
+}
+
+glm::vec4 SurfaceSampler::baseAt(const Material& material, const MaterialBlock& block,
+                                 const Attributes& attributes) const {
+  glm::vec4 base = block.baseColor * attributes.colour;
+  if (material.baseColorTexture.texture >= 0) base *= texel(material.baseColorTexture, 0, block, attributes);
+  return base;
+}
+
+float SurfaceSampler::alphaAt(int material, const Attributes& attributes) const {
+  const auto index = static_cast<std::size_t>(material);
+  return baseAt(scene_.materials[index], blocks_[index], attributes).a;
+}
+
+shading::Surface SurfaceSampler::surfaceAt(int index, const Attributes& attributes, float thicknessScale, bool front,
+                                           RimKind rim, float alphaWidth) const {
+  const Material& material = scene_.materials[static_cast<std::size_t>(index)];
+  const MaterialBlock& block = blocks_[static_cast<std::size_t>(index)];
+  shading::MaterialPoint point;
+  point.base = baseAt(material, block, attributes);
+  point.emission = glm::vec3(block.emission);
+  point.metallic = block.emission.a;
+  point.roughness = block.interface_.r;
+  point.transmission = block.interface_.g;
+  point.ior = block.interface_.b;
+  if (material.metallicRoughnessTexture.texture >= 0) {
+    const glm::vec4 value = texel(material.metallicRoughnessTexture, 1, block, attributes);
+    point.roughness *= value.g;
+    point.metallic *= value.b;
+  }
+  if (material.emissiveTexture.texture >= 0)
+    point.emission *= glm::vec3(texel(material.emissiveTexture, 2, block, attributes));
+  if (material.transmissionTexture.texture >= 0)
+    point.transmission *= texel(material.transmissionTexture, 3, block, attributes).r;
+  glm::vec3 attenuation(1.0f);
+  // What enters on a front face leaves through a back face: counted once.
+  if (front && material.transmission > 0.0f && hasVolume(material)) {
+    float ratio = block.volume.a * thicknessScale;
+    if (material.thicknessTexture.texture >= 0) ratio *= texel(material.thicknessTexture, 4, block, attributes).g;
+    attenuation = shading::attenuationOf(glm::vec3(block.volume), ratio);
+  }
+  float coverage = 1.0f;
+  if (material.alphaMode == AlphaMode::blend) coverage = glm::clamp(point.base.a, 0.0f, 1.0f);
+  if (material.alphaMode == AlphaMode::mask)
+    coverage = rim == RimKind::smooth ? shading::maskCoverage(point.base.a, material.alphaCutoff, alphaWidth)
+                                      : (point.base.a >= material.alphaCutoff ? 1.0f : 0.0f);
+  return shading::surfaceOf(point, coverage * block.covering.r, attenuation, material.unlit);
+}
+
+}  // namespace pellucid::rays

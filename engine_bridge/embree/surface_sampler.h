@@ -1,0 +1,50 @@
+// A glTF material under a hit: what shaders/gl/material.glsl fetches, fetched on the CPU and handed to the same shared
+// text.
+#pragma once
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "engine_bridge/embree/texture_sampler.h"
+#include "engine_bridge/embree/triangle.h"
+#include "engine_bridge/scene/blocks.h"
+
+namespace pellucid::rays {
+
+// An instance as seen by a camera.
+struct Placed {
+  glm::dmat4 viewFromObject{1.0};
+  glm::mat3 normalFromObject{1.0f};  // carries normals to view space, any length
+  float thicknessScale = 1.0f;       // metres per unit of object space
+};
+std::vector<Placed> placeInstances(const Scene& scene, const Camera& camera);
+
+// Vertex attributes at a hit.
+struct Attributes {
+  glm::vec3 normal;  // view space, any length
+  glm::vec2 uv[2];
+  glm::vec4 colour;
+};
+Attributes attributesAt(const Primitive& primitive, const Placed& placed, std::size_t triangle, const TriangleHit& hit);
+
+enum class RimKind { smooth, hard };
+
+class SurfaceSampler {
+ public:
+  SurfaceSampler(const Scene& scene, TexelFilter filter);
+
+  // Alpha before the mask's cut, base colour, texture and vertex colour together.
+  float alphaAt(int material, const Attributes& attributes) const;
+  //   alphaWidth  how much alpha changes over one pixel, for the smooth rims of masks
+  shading::Surface surfaceAt(int material, const Attributes& attributes, float thicknessScale, bool front, RimKind rim,
+                             float alphaWidth) const;
+
+ private:
+  glm::vec4 texel(const TextureRef& reference, int slot, const MaterialBlock& block, const Attributes& attributes) const;
+  glm::vec4 baseAt(const Material& material, const MaterialBlock& block, const Attributes& attributes) const;
+
+  const Scene& scene_;
+  TexelFilter filter_;
+  std::vector<MaterialBlock> blocks_;
+};
+
+}  // namespace pellucid::rays

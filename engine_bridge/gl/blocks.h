@@ -1,0 +1,22 @@
+// What the shaders read from uniform and storage blocks, byte for byte. Mirrors shaders/gl/frame.glsl; materials and
+// lights are engine_bridge/scene/blocks.h.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "engine_bridge/scene/blocks.h"
+
+namespace pellucid::gl {
+
+struct FrameBlock {
+  glm::mat4 clipFromView{1.0f};
+  glm::vec4 surroundings{0.0f};
+  float weightNear = 0, weightFar = 0, weightExponent = 0, depthFactor = 1;
+  std::int32_t bandX = 0, bandY = 0, bandWidth = 0, bandUnused = 0;
+  std::int32_t lightCount = 0, orthographic = 0, unused[2] = {0, 0};
+};
+static_assert(sizeof(FrameBlock) == 128);
+static_assert(offsetof(FrameBlock, weightNear) == 80 && offsetof(FrameBlock, bandX) == 96);
+static_assert(offsetof(FrameBlock, lightCount) == 112);
+
+}  // namespace pellucid::gl

@@ -1,0 +1,86 @@
+// Cuts a scene's transparent triangles into chunks that fit a budget, in the order asked for, and keeps a ring of them
+// in GL buffers. What does not fit is uploaded again on every sweep, so memory is set by the budget, not by the file.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+#include "engine_bridge/gl/gl_objects.h"
+#include "engine_bridge/gl/transparent_pass.h"
+
+namespace pellucid::gl {
+
+// Triangles of one instance that lie together in a chunk.
+struct ChunkDraw {
+  std::uint32_t instance;       // index into Scene::instances
+  std::uint32_t firstTriangle;  // in the chunk's index and triangle-number buffers
+  std::uint32_t triangles;
+};
+
+struct ChunkData {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;          // into vertices
+  std::vector<std::uint32_t> triangleNumbers;  // within the primitive, one per triangle: survives every reordering
+  std::vector<ChunkDraw> draws;
+  void clear();
+  std::size_t bytes() const;
+};
+
+// Walks the transparent triangles once. next() fills one chunk of at most `chunkBytes` (but at least one triangle).
+class ChunkCutter {
+ public:
+  ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes);
+  bool next(ChunkData& chunk);
+
+ private:
+  struct Run {  // triangles of one instance, submitted one after the other
+    std::uint32_t instance, first, count;
+  };
+  bool appendRun(const Run& run, ChunkData& chunk);  // false when the chunk is full
+  bool reuseWhole(const Run& run, ChunkData& chunk);
+  std::uint32_t triangleAt(const Run& run, std::uint32_t turn) const;
+
+  const Scene& scene_;
+  SubmissionOrder order_;
+  std::size_t chunkBytes_;
+  std::vector<Run> runs_;
+  std::size_t run_ = 0;                            // next run
+  std::uint32_t done_ = 0;                         // triangles of it that earlier chunks hold
+  std::vector<std::uint32_t> place_, placeStamp_;  // vertex of the primitive -> vertex of the chunk
+  std::uint32_t stamp_ = 0;
+  std::unordered_map<int, ChunkDraw> whole_;  // primitives that lie complete in this chunk: instances share them
+};
+
+class GeometryStream {
+ public:
+  explicit GeometryStream(const Scene& scene);
+
+  // Calls `draw` for each chunk in submission order, with its vertex array bound, and the same buffers as storage
+  // blocks 2 (triangle numbers), 5 (vertices) and 6 (indices). Chunks already resident from the last sweep with the
+  // same arguments are not uploaded again.
+  void sweep(SubmissionOrder order, std::size_t budgetBytes,
+             const std::function<void(const std::vector<ChunkDraw>&)>& draw);
+  std::size_t chunks() const { return chunks_; }        // of the last sweep
+  std::size_t triangles() const { return triangles_; }  // of the last sweep
+
+ private:
+  struct Slot {
+    Buffer vertices, indices, triangleNumbers;
+    VertexArray array;
+    std::vector<ChunkDraw> draws;
+  };
+  Slot makeSlot() const;
+  void upload(const ChunkData& chunk, Slot& slot);
+  void present(const Slot& slot, const std::function<void(const std::vector<ChunkDraw>&)>& draw);
+
+  const Scene& scene_;
+  std::vector<Slot> slots_;
+  SubmissionOrder residentOrder_;
+  std::size_t residentBudget_ = 0;
+  bool resident_ = false;  // every chunk lies in a slot
+  std::size_t chunks_ = 0, triangles_ = 0;
+  ChunkData staging_;
+};
+
+}  // namespace pellucid::gl

@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <chrono>
+
+#include "engine_bridge/gl/fragment_lists.h"
+#include "engine_bridge/gl/renderer.h"
+#include "engine_bridge/gl/solid_hash.h"
+#include "engine_bridge/gl/transparent_pass.h"
+
+namespace pellucid {
+
+struct TransparentPass::Impl {
+  const GBuffer& gbuffer;
+  Camera camera;
+  gl::Renderer renderer;
+  PassStatistics statistics;
+
+  void finish(std::chrono::steady_clock::time_point start, std::size_t tiles, std::size_t fragments) {
+    statistics.triangles = renderer.geometry().triangles();
+    statistics.chunks = renderer.geometry().chunks();
+    statistics.tiles = tiles;
+    statistics.fragments = fragments;
+    statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+};
+
+TransparentPass::TransparentPass(GlContext&, const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
+    : impl_(new Impl{gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}}) {}
+
+TransparentPass::~TransparentPass() = default;
+
+const PassStatistics& TransparentPass::statistics() const {
+  return impl_->statistics;
+}
+
+OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
+  const auto start = std::chrono::steady_clock::now();
+  gl::Renderer& renderer = impl_->renderer;
+  OitPlanes planes = emptyPlanes(impl_->gbuffer.display, impl_->gbuffer.data);
+  planes.camera = impl_->camera;
+  planes.info.weight = settings.weight;
+  planes.info.normalisation = settings.normalisation;
+  std::size_t tiles = 0;
+  for (const Window& part : renderer.superTiles()) {
+    renderer.begin(part, settings, settings.budgetBytes);
+    const std::vector<Window> scissors = renderer.tiles();
+    tiles += scissors.size();
+    renderer.targets().beginSums(renderer.canAdd());
+    renderer.draw(gl::Output::sums, scissors);
+    renderer.targets().readSums(planes, part.x0, part.y0);
+    if (renderer.hasSolids()) renderer.targets().readSolid(planes.solid, part.x0, part.y0);
+  }
+  if (renderer.hasSolids()) planes.info.solidHash = gl::solidHash(planes.solid);
+  std::size_t fragments = 0;
+  for (std::size_t i = 0; i < planes.weight.size(); ++i) fragments += static_cast<std::size_t>(planes.weight[i].a);
+  impl_->finish(start, tiles, fragments);
+  return planes;
+}
+
+void TransparentPass::fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& tile) {
+  const auto start = std::chrono::steady_clock::now();
+  gl::Renderer& renderer = impl_->renderer;
+  std::size_t bands = 0, fragments = 0;
+  for (const Window& part : renderer.superTiles()) {
+    // Half for the geometry, half for the fragments.
+    renderer.begin(part, settings, settings.budgetBytes / 2);
+    gl::listFragments(renderer, settings.budgetBytes / 2, [&](FragmentLists& lists, const Window& band) {
+      const Window& data = impl_->gbuffer.data;
+      const int x = data.x0 + part.x0, y = data.y0 + part.y0;
+      lists.window = {x + band.x0, y + band.y0, x + band.x1, y + band.y1};
+      ++bands;
+      fragments += lists.fragments.size();
+      tile(lists);
+    });
+  }
+  impl_->finish(start, bands, fragments);
+}
+
+}  // namespace pellucid

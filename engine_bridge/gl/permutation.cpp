@@ -1,0 +1,49 @@
+#include "engine_bridge/gl/permutation.h"
+
+#include "engine_bridge/gl/blocks.h"
+
+namespace pellucid::gl {
+
+std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame) {
+  std::vector<std::string> defines;
+  auto define = [&defines](const char* name, bool wanted) {
+    if (wanted) defines.emplace_back(name);
+  };
+  const bool lit = !material.unlit;
+  define("UNLIT", material.unlit);
+  define("LIGHTS", lit && frame.lights);
+  define("SURROUNDINGS", lit && frame.surroundings);
+  define("VERTEX_COLOUR", vertexColours);
+  define("BLEND", material.alphaMode == AlphaMode::blend);
+  define("MASK_SMOOTH", material.alphaMode == AlphaMode::mask && frame.mask == MaskEdge::smooth);
+  define("MASK_HARD", material.alphaMode == AlphaMode::mask && frame.mask == MaskEdge::hard);
+  const bool transmits = material.transmission > 0.0f;
+  define("BASE_TEXTURE", material.baseColorTexture.texture >= 0);
+  define("METALLIC_ROUGHNESS_TEXTURE", lit && material.metallicRoughnessTexture.texture >= 0);
+  define("EMISSIVE_TEXTURE", lit && material.emissiveTexture.texture >= 0 && material.emission != glm::vec3(0.0f));
+  define("TRANSMISSION_TEXTURE", transmits && material.transmissionTexture.texture >= 0);
+  define("VOLUME", transmits && hasVolume(material));
+  define("THICKNESS_TEXTURE", transmits && hasVolume(material) && material.thicknessTexture.texture >= 0);
+  return defines;
+}
+
+std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, int weight, int normalisation) {
+  std::vector<std::string> defines;
+  switch (output) {
+    case Output::sums:
+      defines = {"OUTPUT_SUMS", "WEIGHT " + std::to_string(weight), "NORMALISATION " + std::to_string(normalisation)};
+      break;
+    case Output::count:
+      defines = {"OUTPUT_COUNT"};
+      break;
+    case Output::list:
+      defines = {"OUTPUT_LIST"};
+      break;
+    case Output::solid:
+      return {"OUTPUT_SOLID"};
+  }
+  if (frame.solids) defines.emplace_back("SOLIDS");
+  return defines;
+}
+
+}  // namespace pellucid::gl

@@ -1,0 +1,27 @@
+// Which text of the fragment stage a draw needs: a software rasteriser pays for every feature that is compiled in.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine_bridge/gl/transparent_pass.h"
+
+namespace pellucid::gl {
+
+enum class Output {
+  sums,   // the OIT planes
+  count,  // fragments per pixel
+  list,   // the fragments themselves
+  solid   // the nearest fragment that hides everything
+};
+
+struct FrameFeatures {
+  MaskEdge mask = MaskEdge::smooth;
+  bool lights = false, surroundings = false;
+  bool solids = false;  // there is a solid plane to test against
+};
+
+// Defines for shaders/gl/transparent.frag.
+std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame);
+std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, int weight, int normalisation);
+
+}  // namespace pellucid::gl

@@ -1,0 +1,31 @@
+// GL programs made from shaders/gl, one per set of defines, kept once linked.
+#pragma once
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "engine_bridge/gl/gl_objects.h"
+
+namespace pellucid::gl {
+
+struct Program {
+  ProgramName name;
+  // Locations of the plain uniforms, -1 where this permutation has no use for one; GL ignores writes to -1.
+  GLint viewFromObject = -1, normalFromObject = -1, thicknessScale = -1;
+  GLint instanceIdentity = -1, turn = -1;
+};
+
+// Throws std::logic_error with the compiler's log: shaders are ours, not the user's.
+Program buildProgram(const std::string& vertexStage, const std::string& fragmentStage,
+                     const std::vector<std::string>& defines);
+
+class ProgramCache {
+ public:
+  const Program& get(const std::string& vertexStage, const std::string& fragmentStage,
+                     const std::vector<std::string>& defines);
+
+ private:
+  std::unordered_map<std::string, Program> programs_;
+};
+
+}  // namespace pellucid::gl

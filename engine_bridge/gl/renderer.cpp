@@ -1,0 +1,257 @@
+#include "engine_bridge/gl/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "engine_bridge/gl/solidity.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid::gl {
+namespace {
+
+constexpr const char* kVertexStage = "gl/transparent.vert";
+constexpr const char* kFragmentStage = "gl/transparent.frag";
+
+// Carries normals; unlike the inverse transpose it stands a flattened (singular) matrix.
+glm::dmat3 cofactors(const glm::dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+template <class T>
+void fillStorage(const Buffer& buffer, const std::vector<T>& values) {
+  // A block without a byte cannot be bound.
+  const T none{};
+  glNamedBufferData(buffer.name(), static_cast<GLsizeiptr>(std::max<std::size_t>(values.size(), 1) * sizeof(T)),
+                    values.empty() ? &none : values.data(), GL_STATIC_DRAW);
+}
+
+void requireMatch(const GBuffer& gbuffer) {
+  if (gbuffer.data.width() <= 0 || gbuffer.data.height() <= 0 || gbuffer.viewZ.width() != gbuffer.data.width() ||
+      gbuffer.viewZ.height() != gbuffer.data.height())
+    throw std::logic_error("the G-buffer's depth does not have the size of its data window");
+}
+
+}  // namespace
+
+Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
+    : scene_(scene), gbuffer_(gbuffer), camera_(camera), textures_(scene), stream_(scene) {
+  requireMatch(gbuffer);
+  frameBuffer_ = Buffer::make();
+  materialBuffer_ = Buffer::make();
+  lightBuffer_ = Buffer::make();
+
+  const std::vector<PunctualLight> lights = lightBlocks(scene.lights, camera);
+  lights_ = static_cast<int>(lights.size());
+  fillStorage(lightBuffer_, lights);
+
+  GLint alignment = 1;
+  glGetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
+  const auto step = static_cast<std::size_t>(alignment);
+  materialStride_ = (sizeof(MaterialBlock) + step - 1) / step * step;
+  std::vector<std::uint8_t> materials(materialStride_ * scene.materials.size());
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const MaterialBlock block = materialBlock(scene.materials[i]);
+    std::memcpy(&materials[i * materialStride_], &block, sizeof(block));
+  }
+  fillStorage(materialBuffer_, materials);
+
+  drawables_.reserve(scene.instances.size());
+  for (const Instance& instance : scene.instances) {
+    Drawable drawable;
+    drawable.viewFromObject = camera.viewFromWorld * instance.worldFromObject;
+    drawable.position = glm::mat4(drawable.viewFromObject);
+    const glm::dmat3 linear(drawable.viewFromObject);
+    const double volume = glm::determinant(linear);
+    glm::dmat3 normal = cofactors(linear);
+    double largest = 0;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) largest = std::max(largest, std::abs(normal[c][r]));
+    if (largest > 0) normal *= (volume < 0 ? -1.0 : 1.0) / largest;
+    drawable.normal = glm::mat3(normal);
+    drawable.mirrored = volume < 0;
+    drawable.thicknessScale = static_cast<float>(std::cbrt(std::abs(volume)));
+    drawables_.push_back(drawable);
+  }
+  classify();
+  checkGl("preparing the transparent pass");
+}
+
+void Renderer::classify() {
+  std::vector<float> largestScale(scene_.primitives.size(), -1.0f);
+  for (std::size_t i = 0; i < drawables_.size(); ++i) {
+    float& scale = largestScale[static_cast<std::size_t>(scene_.instances[i].primitive)];
+    scale = std::max(scale, drawables_[i].thicknessScale);
+  }
+  for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
+    const Primitive& primitive = scene_.primitives[i];
+    const Material& material = scene_.materials.at(static_cast<std::size_t>(primitive.material));
+    Shader shader{};
+    if (material.transparent() && largestScale[i] >= 0.0f) {
+      TexelRange colours;
+      for (const Vertex& vertex : primitive.vertices) {
+        colours.least = glm::min(colours.least, vertex.colour);
+        colours.most = glm::max(colours.most, vertex.colour);
+      }
+      shader.vertexColours = colours.least != glm::vec4(1.0f) || colours.most != glm::vec4(1.0f);
+      shader.canBeSolid = canBeSolid(material, colours, textures_, largestScale[i]);
+      anySolid_ = anySolid_ || shader.canBeSolid;
+      canAdd_ = canAdd_ || canBeAdditive(material);
+    }
+    shaders_.push_back(std::move(shader));
+  }
+}
+
+std::vector<Window> Renderer::superTiles() const {
+  std::vector<Window> parts;
+  const int width = gbuffer_.data.width(), height = gbuffer_.data.height();
+  for (int y = 0; y < height; y += kSuperTile)
+    for (int x = 0; x < width; x += kSuperTile)
+      parts.push_back({x, y, std::min(x + kSuperTile, width), std::min(y + kSuperTile, height)});
+  return parts;
+}
+
+void Renderer::begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
+  settings_ = settings;
+  geometryBytes_ = geometryBytes;
+  features_.mask = settings.mask;
+  features_.lights = lights_ > 0;
+  features_.surroundings = settings.surroundings != glm::vec3(0.0f);
+  features_.solids = anySolid_;
+  for (std::size_t i = 0; i < shaders_.size(); ++i) {
+    shaders_[i].surface = surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
+                                         shaders_[i].vertexColours, features_);
+    std::fill(std::begin(shaders_[i].programs), std::end(shaders_[i].programs), nullptr);
+  }
+
+  if (!targets_ || targets_->width() != superTile.width() || targets_->height() != superTile.height())
+    targets_.emplace(superTile.width(), superTile.height());
+  if (!(opaqueZ_ && opaqueZPart_ == superTile)) {
+    opaqueZ_ = uploadPlane(gbuffer_.viewZ, superTile);
+    opaqueZPart_ = superTile;
+  }
+
+  const Window& data = gbuffer_.data;
+  const Window part{data.x0 + superTile.x0, data.y0 + superTile.y0, data.x0 + superTile.x1, data.y0 + superTile.y1};
+  frame_ = FrameBlock{};
+  frame_.clipFromView = glm::mat4(clipFromView(camera_, gbuffer_.display, part, settings.sample));
+  frame_.surroundings = glm::vec4(settings.surroundings, 0.0f);
+  frame_.weightNear = settings.weight.rangeNear;
+  frame_.weightFar = settings.weight.rangeFar;
+  frame_.weightExponent = settings.weight.exponent;
+  frame_.depthFactor = 1.0f + gbuffer_.depthPrecision;
+  frame_.lightCount = lights_;
+  frame_.orthographic = camera_.orthographic ? 1 : 0;
+  uploadFrame();
+
+  glViewport(0, 0, superTile.width(), superTile.height());
+  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  // Whatever an earlier pass that threw has left.
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDisable(GL_DEPTH_TEST);
+  glCullFace(GL_BACK);
+  glBindTextureUnit(5, opaqueZ_.name());
+  glBindSampler(5, 0);
+  glBindSampler(6, 0);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lightBuffer_.name());
+  checkGl("beginning the transparent pass");
+  drawSolids();
+}
+
+void Renderer::uploadFrame() {
+  glNamedBufferData(frameBuffer_.name(), sizeof(frame_), &frame_, GL_DYNAMIC_DRAW);
+}
+
+void Renderer::setBand(const Window& band) {
+  frame_.bandX = band.x0;
+  frame_.bandY = band.y0;
+  frame_.bandWidth = band.width();
+  uploadFrame();
+}
+
+// Depth first, then the largest radiance at that depth: no order of triangles shows. One program does both, so that
+// the depths compared as equal are the same bits.
+void Renderer::drawSolids() {
+  if (!anySolid_) return;
+  targets_->beginSolidDepth();
+  draw(Output::solid, tiles());
+  targets_->beginSolidTies();
+  draw(Output::solid, tiles());
+  glDisable(GL_DEPTH_TEST);
+  targets_->bindSolid();
+}
+
+const Program& Renderer::programFor(int primitive, Output output) {
+  Shader& shader = shaders_[static_cast<std::size_t>(primitive)];
+  const Program*& program = shader.programs[static_cast<std::size_t>(output)];
+  if (!program) {
+    std::vector<std::string> defines = outputDefines(output, features_, settings_.weight.kind, settings_.normalisation);
+    defines.insert(defines.end(), shader.surface.begin(), shader.surface.end());
+    program = &programs_.get(kVertexStage, kFragmentStage, defines);
+  }
+  return *program;
+}
+
+void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
+  const Program* program = nullptr;
+  int boundMaterial = -1;
+  for (const ChunkDraw& one : draws) {
+    const Instance& instance = scene_.instances[one.instance];
+    const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(instance.primitive)];
+    if (output == Output::solid && !shaders_[static_cast<std::size_t>(instance.primitive)].canBeSolid) continue;
+    const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
+    const Drawable& drawable = drawables_[one.instance];
+    const Program& wanted = programFor(instance.primitive, output);
+    if (&wanted != program) glUseProgram(wanted.name.name());
+    program = &wanted;
+    if (boundMaterial != primitive.material) {
+      boundMaterial = primitive.material;
+      textures_.bind(material, settings_.filter);
+      glBindBufferRange(GL_UNIFORM_BUFFER, 1, materialBuffer_.name(),
+                        static_cast<GLintptr>(static_cast<std::size_t>(boundMaterial) * materialStride_),
+                        sizeof(MaterialBlock));
+    }
+    if (material.doubleSided)
+      glDisable(GL_CULL_FACE);
+    else
+      glEnable(GL_CULL_FACE);
+    glFrontFace(drawable.mirrored ? GL_CW : GL_CCW);
+    glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &drawable.position[0][0]);
+    glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &drawable.normal[0][0]);
+    glUniform1f(program->thicknessScale, drawable.thicknessScale);
+    glUniform1ui(program->instanceIdentity, instance.identity);
+    const auto corners = static_cast<GLsizei>(one.triangles * 3);
+    if (output == Output::list) {
+      // The stage pulls its vertices, and knows its triangle by gl_VertexID.
+      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.firstTriangle * 3), corners);
+    } else {
+      const std::size_t firstByte = std::size_t{one.firstTriangle} * 3 * sizeof(std::uint32_t);
+      glDrawElements(GL_TRIANGLES, corners, GL_UNSIGNED_INT, reinterpret_cast<const void*>(firstByte));
+    }
+  }
+}
+
+void Renderer::draw(Output output, const std::vector<Window>& scissors) {
+  glEnable(GL_SCISSOR_TEST);
+  stream_.sweep(settings_.order, geometryBytes_, [&](const std::vector<ChunkDraw>& draws) {
+    for (const Window& scissor : scissors) {
+      glScissor(scissor.x0, scissor.y0, scissor.width(), scissor.height());
+      drawChunk(draws, output);
+    }
+  });
+  checkGl("drawing transparent triangles");
+}
+
+std::vector<Window> Renderer::tiles() const {
+  const int width = targets_->width(), height = targets_->height();
+  const int edge = settings_.tile > 0 ? settings_.tile : std::max(width, height);
+  std::vector<Window> tiles;
+  for (int y = 0; y < height; y += edge)
+    for (int x = 0; x < width; x += edge)
+      tiles.push_back({x, y, std::min(x + edge, width), std::min(y + edge, height)});
+  return tiles;
+}
+
+}  // namespace pellucid::gl

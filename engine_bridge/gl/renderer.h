@@ -1,0 +1,80 @@
+// Draws the transparent triangles of a scene over one super-tile with any output: what sums, solids, counts and lists
+// have in common. Owns and restores no state of others: the context is ours.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/geometry_stream.h"
+#include "engine_bridge/gl/permutation.h"
+#include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/scene_textures.h"
+#include "engine_bridge/gl/targets.h"
+
+namespace pellucid::gl {
+
+class Renderer {
+ public:
+  Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
+
+  // Parts of the data window that are drawn at once, in pixels of its top left corner, row by row.
+  std::vector<Window> superTiles() const;
+
+  // Camera, opaque depth and targets for one of them, and its solid plane.
+  void begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);
+
+  // Everything with this output, clipped to each scissor in turn (pixels of the super-tile).
+  void draw(Output output, const std::vector<Window>& scissors);
+  // Pixels per row and origin of the list buffers.
+  void setBand(const Window& band);
+
+  Targets& targets() { return *targets_; }
+  bool canAdd() const { return canAdd_; }
+  bool hasSolids() const { return features_.solids; }
+  // Scissor tiles of the super-tile, as PassSettings::tile wants them.
+  std::vector<Window> tiles() const;
+  const GeometryStream& geometry() const { return stream_; }
+
+ private:
+  struct Drawable {  // per instance
+    glm::dmat4 viewFromObject;
+    glm::mat4 position;
+    glm::mat3 normal;
+    float thicknessScale;
+    bool mirrored;
+  };
+  struct Shader {  // per primitive
+    std::vector<std::string> surface;
+    bool vertexColours;
+    bool canBeSolid;
+    const Program* programs[4] = {nullptr, nullptr, nullptr, nullptr};  // by Output, looked up once per begin()
+  };
+  void classify();
+  const Program& programFor(int primitive, Output output);
+  void uploadFrame();
+  void drawSolids();
+  void drawChunk(const std::vector<ChunkDraw>& draws, Output output);
+
+  const Scene& scene_;
+  const GBuffer& gbuffer_;
+  Camera camera_;
+  SceneTextures textures_;
+  GeometryStream stream_;
+  ProgramCache programs_;
+  Buffer frameBuffer_, materialBuffer_, lightBuffer_;
+  std::size_t materialStride_ = 0;
+  std::vector<Drawable> drawables_;
+  std::vector<Shader> shaders_;
+  int lights_ = 0;
+  bool anySolid_ = false, canAdd_ = false;
+
+  PassSettings settings_;
+  std::size_t geometryBytes_ = 0;
+  FrameFeatures features_;
+  FrameBlock frame_;
+  std::optional<Targets> targets_;
+  Texture opaqueZ_;
+  Window opaqueZPart_;
+};
+
+}  // namespace pellucid::gl

@@ -1,0 +1,69 @@
+// The parity test's GL voice: fragments read from a buffer instead of rasterised, through the same blending.
+#include <algorithm>
+#include <limits>
+
+#include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/targets.h"
+#include "engine_bridge/gl/transparent_pass.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+
+OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading::WeightSettings& weight,
+                          int normalisation) {
+  const int width = lists.window.width(), height = lists.window.height();
+  OitPlanes planes = emptyPlanes(lists.window, lists.window);
+  planes.info.weight = weight;
+  planes.info.normalisation = normalisation;
+  planes.solid = lists.solid;
+  if (lists.fragments.empty()) return planes;
+  if (lists.fragments.size() > std::numeric_limits<std::uint32_t>::max())
+    throw ResourceError("GL: too many fragments to replay at once");
+
+  std::vector<std::uint32_t> offsets(lists.offsets.begin(), lists.offsets.end());
+  std::uint32_t deepest = 0;
+  for (std::size_t i = 0; i + 1 < offsets.size(); ++i) deepest = std::max(deepest, offsets[i + 1] - offsets[i]);
+
+  auto fill = [](const gl::Buffer& buffer, const auto& values) {
+    glNamedBufferData(buffer.name(), static_cast<GLsizeiptr>(values.size() * sizeof(values[0])), values.data(),
+                      GL_STATIC_DRAW);
+  };
+  gl::FrameBlock frame;
+  frame.weightNear = weight.rangeNear;
+  frame.weightFar = weight.rangeFar;
+  frame.weightExponent = weight.exponent;
+  frame.bandWidth = width;
+  const gl::Buffer fragmentBuffer = gl::Buffer::make(), offsetBuffer = gl::Buffer::make(),
+                   frameBuffer = gl::Buffer::make();
+  fill(fragmentBuffer, lists.fragments);
+  fill(offsetBuffer, offsets);
+  glNamedBufferData(frameBuffer.name(), sizeof(frame), &frame, GL_STATIC_DRAW);
+  gl::checkGl("uploading fragments to replay");
+
+  const gl::Program program =
+      gl::buildProgram("gl/fullscreen.vert", "gl/replay.frag",
+                       {"WEIGHT " + std::to_string(weight.kind), "NORMALISATION " + std::to_string(normalisation)});
+  const gl::VertexArray noVertices = gl::VertexArray::make();
+  gl::Targets targets(width, height);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glViewport(0, 0, width, height);
+  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  targets.beginSums(true);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, fragmentBuffer.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, offsetBuffer.name());
+  glBindVertexArray(noVertices.name());
+  glUseProgram(program.name.name());
+  for (std::uint32_t turn = 0; turn < deepest; ++turn) {
+    glUniform1ui(program.turn, turn);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  targets.readSums(planes, 0, 0);
+  glUseProgram(0);
+  return planes;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,110 @@
+#include "engine_bridge/gl/scene_textures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+
+#include "gbuffer/errors.h"
+
+namespace pellucid::gl {
+namespace {
+
+TexelRange rangeOf(const Image<glm::vec4>& texels) {
+  TexelRange range{texels[0], texels[0]};
+  for (std::size_t i = 1; i < texels.size(); ++i) {
+    range.least = glm::min(range.least, texels[i]);
+    range.most = glm::max(range.most, texels[i]);
+  }
+  return range;
+}
+
+GLint wrapOf(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::repeat:
+      return GL_REPEAT;
+    case Wrap::mirror:
+      return GL_MIRRORED_REPEAT;
+    case Wrap::clamp:
+      return GL_CLAMP_TO_EDGE;
+  }
+  throw std::logic_error("a texture wraps in no known way");
+}
+
+void referencesOf(const Material& material, int references[5]) {
+  references[0] = material.baseColorTexture.texture;
+  references[1] = material.metallicRoughnessTexture.texture;
+  references[2] = material.emissiveTexture.texture;
+  references[3] = material.transmissionTexture.texture;
+  references[4] = material.thicknessTexture.texture;
+}
+
+}  // namespace
+
+SceneTextures::SceneTextures(const Scene& scene) : scene_(scene) {
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  for (const Material& material : scene.materials) {
+    if (!material.transparent()) continue;
+    int references[5];
+    referencesOf(material, references);
+    for (const int index : references) {
+      if (index < 0 || uploaded_.count(index)) continue;
+      const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(index));
+      const Image<glm::vec4>& texels = texture.texels;
+      if (texels.empty()) throw std::logic_error(texture.name + ": a texture without texels");
+      if (std::max(texels.width(), texels.height()) > largest)
+        throw ResourceError(fmt::format("{}: texture of {}x{} texels: the GL device holds {} along an edge",
+                                        texture.name, texels.width(), texels.height(), largest));
+      Uploaded uploaded;
+      uploaded.texture = Texture::make();
+      const auto edge = static_cast<unsigned>(std::max(texels.width(), texels.height()));
+      glTextureStorage2D(uploaded.texture.name(), std::bit_width(edge), GL_RGBA32F, texels.width(), texels.height());
+      glTextureSubImage2D(uploaded.texture.name(), 0, 0, 0, texels.width(), texels.height(), GL_RGBA, GL_FLOAT,
+                          texels.data());
+      checkGl("uploading texture " + texture.name);
+      uploaded.range = rangeOf(texels);
+      uploaded_.emplace(index, std::move(uploaded));
+    }
+  }
+}
+
+TexelRange SceneTextures::range(int index) const {
+  return index < 0 ? TexelRange{} : uploaded_.at(index).range;
+}
+
+const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, TextureFilter filter) {
+  const bool nearest = texture.nearest || filter == TextureFilter::nearest;
+  const bool mipmap = filter == TextureFilter::mipmap;
+  const int key =
+      ((static_cast<int>(texture.wrapS) * 3 + static_cast<int>(texture.wrapT)) * 2 + (nearest ? 1 : 0)) * 2 +
+      (mipmap ? 1 : 0);
+  Sampler& sampler = samplers_[key];
+  if (!sampler) {
+    sampler = Sampler::make();
+    const GLint flat = nearest ? GL_NEAREST : GL_LINEAR;
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, flat);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, mipmap ? GL_LINEAR_MIPMAP_LINEAR : flat);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, wrapOf(texture.wrapS));
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, wrapOf(texture.wrapT));
+  }
+  return sampler;
+}
+
+void SceneTextures::bind(const Material& material, TextureFilter filter) {
+  int references[5];
+  referencesOf(material, references);
+  for (GLuint unit = 0; unit < 5; ++unit) {
+    if (references[unit] < 0) continue;
+    Uploaded& uploaded = uploaded_.at(references[unit]);
+    if (filter == TextureFilter::mipmap && !uploaded.mipmaps) {
+      glGenerateTextureMipmap(uploaded.texture.name());
+      uploaded.mipmaps = true;
+    }
+    glBindTextureUnit(unit, uploaded.texture.name());
+    glBindSampler(unit, samplerFor(scene_.textures[static_cast<std::size_t>(references[unit])], filter).name());
+  }
+}
+
+}  // namespace pellucid::gl

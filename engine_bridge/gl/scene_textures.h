@@ -1,0 +1,39 @@
+// A scene's textures on the device, and the samplers that read them.
+#pragma once
+#include <map>
+#include <vector>
+
+#include "engine_bridge/gl/gl_objects.h"
+#include "engine_bridge/gl/transparent_pass.h"
+
+namespace pellucid::gl {
+
+// Bounds of what a texture can return, whatever the filter.
+struct TexelRange {
+  glm::vec4 least{1.0f}, most{1.0f};
+};
+
+class SceneTextures {
+ public:
+  // Uploads the textures that transparent materials use. Throws ResourceError for one that the device cannot hold.
+  explicit SceneTextures(const Scene& scene);
+
+  // Binds a material's textures to units 0-4, as shaders/gl/material.glsl numbers them.
+  void bind(const Material& material, TextureFilter filter);
+  // Of texture `index`; all 1 for -1, as a missing texture counts in a product.
+  TexelRange range(int index) const;
+
+ private:
+  const Sampler& samplerFor(const pellucid::Texture& texture, TextureFilter filter);
+
+  struct Uploaded {
+    Texture texture;
+    TexelRange range;
+    bool mipmaps = false;  // made when a filter first asks for them
+  };
+  const Scene& scene_;
+  std::map<int, Uploaded> uploaded_;
+  std::map<int, Sampler> samplers_;
+};
+
+}  // namespace pellucid::gl

@@ -1,0 +1,171 @@
+#include "engine_bridge/gl/targets.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace pellucid::gl {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr GLenum kAllSums[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
+                               GL_COLOR_ATTACHMENT3, GL_COLOR_ATTACHMENT4, GL_COLOR_ATTACHMENT5};
+constexpr GLenum kSumsWithoutLight[] = {
+    GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3, GL_NONE,
+    GL_COLOR_ATTACHMENT5};
+
+void requireComplete(const Framebuffer& framebuffer) {
+  if (glCheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw std::logic_error("a framebuffer of the transparent pass is incomplete");
+}
+
+void readInto(const Texture& texture, GLenum format, int width, int height, void* first, int rowLength) {
+  const std::size_t texel = (format == GL_RGBA ? 4 : 1) * sizeof(float);
+  const std::size_t bytes =
+      (static_cast<std::size_t>(height - 1) * static_cast<std::size_t>(rowLength) + static_cast<std::size_t>(width)) *
+      texel;
+  constexpr std::size_t most = std::numeric_limits<GLsizei>::max();
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glPixelStorei(GL_PACK_ROW_LENGTH, rowLength);
+  glGetTextureImage(texture.name(), 0, format, GL_FLOAT, static_cast<GLsizei>(std::min(bytes, most)), first);
+  glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+}
+
+}  // namespace
+
+Texture Targets::add(GLenum format) const {
+  Texture texture = Texture::make();
+  glTextureStorage2D(texture.name(), 1, format, width_, height_);
+  return texture;
+}
+
+Targets::Targets(int width, int height) : width_(width), height_(height) {
+  sumsFrame_ = Framebuffer::make();
+  for (GLuint i = 0; i < 5; ++i) {
+    sums_[i] = add(GL_RGBA32F);
+    glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + i, sums_[i].name(), 0);
+  }
+  frontZ_ = add(GL_R32F);
+  glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT5, frontZ_.name(), 0);
+  checkGl("making the targets of the transparent pass");
+  requireComplete(sumsFrame_);
+}
+
+// Clearing obeys the scissor; draws set theirs.
+void Targets::beginSums(bool light) {
+  glDisable(GL_SCISSOR_TEST);
+  const GLuint frame = sumsFrame_.name();
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+  glNamedFramebufferDrawBuffers(frame, 6, kAllSums);
+  const float zero[4] = {0, 0, 0, 0};
+  const float far[4] = {kInfinity, 0, 0, 0};
+  for (GLint i = 0; i < 5; ++i) glClearNamedFramebufferfv(frame, GL_COLOR, i, zero);
+  glClearNamedFramebufferfv(frame, GL_COLOR, 5, far);
+  if (!light) glNamedFramebufferDrawBuffers(frame, 6, kSumsWithoutLight);
+  glEnable(GL_BLEND);
+  for (GLuint i = 0; i < 6; ++i) {
+    glBlendFunci(i, GL_ONE, GL_ONE);
+    glBlendEquationi(i, i == 5 ? GL_MIN : GL_FUNC_ADD);
+  }
+}
+
+void Targets::beginCount() {
+  if (!count_) {
+    count_ = add(GL_R32F);
+    countFrame_ = Framebuffer::make();
+    glNamedFramebufferTexture(countFrame_.name(), GL_COLOR_ATTACHMENT0, count_.name(), 0);
+    checkGl("making the fragment count");
+    requireComplete(countFrame_);
+  }
+  glDisable(GL_SCISSOR_TEST);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, countFrame_.name());
+  const float zero[4] = {0, 0, 0, 0};
+  glClearNamedFramebufferfv(countFrame_.name(), GL_COLOR, 0, zero);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glBlendEquation(GL_FUNC_ADD);
+}
+
+void Targets::beginSolidDepth() {
+  if (!solidFrame_) {
+    solid_ = add(GL_RGBA32F);
+    solidDepth_ = add(GL_DEPTH_COMPONENT32F);
+    solidFrame_ = Framebuffer::make();
+    glNamedFramebufferTexture(solidFrame_.name(), GL_COLOR_ATTACHMENT0, solid_.name(), 0);
+    glNamedFramebufferTexture(solidFrame_.name(), GL_DEPTH_ATTACHMENT, solidDepth_.name(), 0);
+    checkGl("making the targets of the solid pass");
+    requireComplete(solidFrame_);
+  }
+  const float none[4] = {0, 0, 0, kInfinity};
+  glDisable(GL_SCISSOR_TEST);
+  glClearNamedFramebufferfv(solidFrame_.name(), GL_COLOR, 0, none);
+  const float infinitelyFar = 0;  // reversed depth
+  glDepthMask(GL_TRUE);
+  glClearNamedFramebufferfv(solidFrame_.name(), GL_DEPTH, 0, &infinitelyFar);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, solidFrame_.name());
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+}
+
+void Targets::beginSolidTies() {
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_EQUAL);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glBlendEquationSeparate(GL_MAX, GL_MIN);
+}
+
+void Targets::beginNothing() {
+  if (!emptyFrame_) {
+    emptyFrame_ = Framebuffer::make();
+    glNamedFramebufferParameteri(emptyFrame_.name(), GL_FRAMEBUFFER_DEFAULT_WIDTH, width_);
+    glNamedFramebufferParameteri(emptyFrame_.name(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, height_);
+    glNamedFramebufferDrawBuffer(emptyFrame_.name(), GL_NONE);
+    requireComplete(emptyFrame_);
+  }
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, emptyFrame_.name());
+  glDisable(GL_BLEND);
+}
+
+void Targets::bindSolid() const {
+  glBindTextureUnit(6, solid_.name());
+}
+
+void Targets::readSums(OitPlanes& planes, int x, int y) const {
+  Image<glm::vec4>* images[] = {&planes.radiance, &planes.weight, &planes.opacity, &planes.depth, &planes.light};
+  for (std::size_t i = 0; i < 5; ++i)
+    readInto(sums_[i], GL_RGBA, width_, height_, &images[i]->at(x, y), images[i]->width());
+  readInto(frontZ_, GL_RED, width_, height_, &planes.frontZ.at(x, y), planes.frontZ.width());
+  checkGl("reading the planes back");
+}
+
+void Targets::readSolid(Image<glm::vec4>& solid, int x, int y) const {
+  readInto(solid_, GL_RGBA, width_, height_, &solid.at(x, y), solid.width());
+  checkGl("reading the solid plane back");
+}
+
+Image<float> Targets::readCount() const {
+  Image<float> count(width_, height_);
+  readInto(count_, GL_RED, width_, height_, count.data(), width_);
+  checkGl("reading the fragment count back");
+  return count;
+}
+
+Texture uploadPlane(const Image<float>& plane, const Window& part) {
+  Texture texture = Texture::make();
+  glTextureStorage2D(texture.name(), 1, GL_R32F, part.width(), part.height());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, plane.width());
+  glTextureSubImage2D(texture.name(), 0, 0, 0, part.width(), part.height(), GL_RED, GL_FLOAT,
+                      &plane.at(part.x0, part.y0));
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  checkGl("uploading the opaque depth");
+  return texture;
+}
+
+}  // namespace pellucid::gl

@@ -1,0 +1,211 @@
+#include "engine_bridge/scene/accessor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace pellucid::gltf {
+
+static_assert(std::endian::native == std::endian::little, "buffers are little endian and copied as they are");
+
+namespace {
+
+// An accessor without a buffer view is zeros: its count is checked against nothing else.
+constexpr std::size_t kMostZeros = std::size_t{1} << 22;
+constexpr std::size_t kMostElements = 0xffffffffu;  // 32-bit indices
+constexpr std::size_t kMostStride = 252;            // glTF 2.0, bufferView.byteStride
+
+enum Component : std::size_t {
+  kByte = 5120,
+  kUByte = 5121,
+  kShort = 5122,
+  kUShort = 5123,
+  kUInt = 5125,
+  kFloat = 5126
+};
+
+std::size_t componentSize(const JsonView& type) {
+  switch (type.unsignedInteger()) {
+    case kByte:
+    case kUByte:
+      return 1;
+    case kShort:
+    case kUShort:
+      return 2;
+    case kUInt:
+    case kFloat:
+      return 4;
+    default:
+      type.refuse(fmt::format("is {}; expected 5120, 5121, 5122, 5123, 5125 or 5126", type.unsignedInteger()));
+  }
+}
+
+std::size_t typeWidth(const JsonView& type) {
+  const std::string& name = type.string();
+  if (name == "SCALAR") return 1;
+  if (name == "VEC2") return 2;
+  if (name == "VEC3") return 3;
+  if (name == "VEC4") return 4;
+  type.refuse(fmt::format("is {}; expected SCALAR, VEC2, VEC3 or VEC4", name));
+}
+
+// Elements in a buffer view, `stride` bytes apart.
+struct Layout {
+  Bytes bytes;
+  std::size_t stride = 0;
+  const std::uint8_t* element(std::size_t i) const { return bytes.data() + i * stride; }
+};
+
+//   holder  the object with bufferView and byteOffset: an accessor, or a part of its `sparse`
+Layout checkedLayout(GltfFile& file, const JsonView& holder, std::size_t count, std::size_t elementSize,
+                     bool mayStride) {
+  const JsonView view = file.item("bufferViews", holder.at("bufferView"));
+  if (const auto meshopt = view.extension("EXT_meshopt_compression"))
+    meshopt->refuse("is compressed, which is not supported");
+  const std::size_t offset = holder.unsignedInteger("byteOffset", 0);
+  Layout layout{file.viewBytes(view), elementSize};
+  if (const std::optional<JsonView> stride = mayStride ? view.find("byteStride") : std::nullopt) {
+    layout.stride = stride->unsignedInteger();
+    if (layout.stride == 0) layout.stride = elementSize;  // glTF 1.0's word for packed, still written by some
+    if (layout.stride < elementSize || layout.stride > kMostStride) {
+      stride->refuse(fmt::format("is {}; expected {} to {}", layout.stride, elementSize, kMostStride));
+    }
+  }
+  const std::size_t available = layout.bytes.size();
+  // No overflow: count < 2^32 and stride < 2^8.
+  const std::size_t needed = (count - 1) * layout.stride + elementSize;
+  if (offset > available || needed > available - offset) {
+    holder.refuse(fmt::format("reads {} bytes from byte {}; {} has {}", needed, offset, view.where(), available));
+  }
+  layout.bytes = layout.bytes.subspan(offset, needed);
+  return layout;
+}
+
+std::size_t checkedCount(const JsonView& accessor) {
+  const JsonView member = accessor.at("count");
+  const std::size_t count = member.unsignedInteger();
+  if (count < 1 || count > kMostElements) member.refuse(fmt::format("is {}; expected 1 to {}", count, kMostElements));
+  if (!accessor.find("bufferView") && count > kMostZeros) {
+    member.refuse(fmt::format("is {} without a bufferView; expected at most {}", count, kMostZeros));
+  }
+  return count;
+}
+
+template <class T>
+T load(const std::uint8_t* bytes) {
+  T value;  // memcpy: the file's alignment is not trusted
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
+float loadFloat(const std::uint8_t* bytes, std::size_t type) {
+  switch (type) {
+    case kByte:
+      return std::max(static_cast<float>(load<std::int8_t>(bytes)) / 127.0f, -1.0f);
+    case kUByte:
+      return static_cast<float>(*bytes) / 255.0f;
+    case kShort:
+      return std::max(static_cast<float>(load<std::int16_t>(bytes)) / 32767.0f, -1.0f);
+    case kUShort:
+      return static_cast<float>(load<std::uint16_t>(bytes)) / 65535.0f;
+    default:
+      return load<float>(bytes);
+  }
+}
+
+std::uint32_t loadIndex(const std::uint8_t* bytes, std::size_t type) {
+  switch (type) {
+    case kUByte:
+      return *bytes;
+    case kUShort:
+      return load<std::uint16_t>(bytes);
+    default:
+      return load<std::uint32_t>(bytes);
+  }
+}
+
+std::size_t indexType(const JsonView& type) {
+  const std::size_t found = type.unsignedInteger();
+  if (found != kUByte && found != kUShort && found != kUInt) {
+    type.refuse(fmt::format("is {}; expected 5121, 5123 or 5125 for indices", found));
+  }
+  return found;
+}
+
+// Calls store(element, bytes) for every element, the sparse ones last.
+template <class Store>
+void forEachElement(GltfFile& file, const JsonView& accessor, std::size_t count, std::size_t elementSize,
+                    const Store& store) {
+  if (accessor.find("bufferView")) {
+    const Layout base = checkedLayout(file, accessor, count, elementSize, true);
+    for (std::size_t i = 0; i < count; ++i) store(i, base.element(i));
+  }
+  const std::optional<JsonView> sparse = accessor.find("sparse");
+  if (!sparse) return;
+  const JsonView member = sparse->at("count");
+  const std::size_t changed = member.unsignedInteger();
+  if (changed < 1 || changed > count) member.refuse(fmt::format("is {}; expected 1 to {}", changed, count));
+  const JsonView where = sparse->at("indices");
+  const std::size_t type = indexType(where.at("componentType"));
+  const Layout indices = checkedLayout(file, where, changed, componentSize(where.at("componentType")), false);
+  const Layout values = checkedLayout(file, sparse->at("values"), changed, elementSize, false);
+  for (std::size_t i = 0; i < changed; ++i) {
+    const std::size_t element = loadIndex(indices.element(i), type);
+    if (element >= count) where.refuse(fmt::format("hold {}; expected indices below {}", element, count));
+    store(element, values.element(i));
+  }
+}
+
+}  // namespace
+
+Elements readElements(GltfFile& file, const JsonView& reference, std::initializer_list<std::size_t> widths,
+                      Integers integers) {
+  const JsonView accessor = file.item("accessors", reference);
+  const JsonView typeName = accessor.at("type");
+  const JsonView componentType = accessor.at("componentType");
+  Elements elements;
+  elements.width = typeWidth(typeName);
+  if (std::find(widths.begin(), widths.end(), elements.width) == widths.end()) {
+    typeName.refuse(fmt::format("is {}, which {} cannot be", typeName.string(), reference.where()));
+  }
+  const std::size_t size = componentSize(componentType);
+  const std::size_t type = componentType.unsignedInteger();
+  const bool normalised = accessor.boolean("normalized", false);
+  const bool integer = type != kFloat;
+  if (integer && (type == kUInt || integers == Integers::none || !normalised)) {
+    componentType.refuse(
+        fmt::format("is {}{}; {} must be {}", type, normalised ? ", normalised" : "", reference.where(),
+                    integers == Integers::none ? "float (5126)" : "float (5126) or normalised bytes or shorts"));
+  }
+  elements.count = checkedCount(accessor);
+  const std::size_t elementSize = size * elements.width;
+  // Checked before anything is allocated: a huge count is only a number so far.
+  if (accessor.find("bufferView")) checkedLayout(file, accessor, elements.count, elementSize, true);
+  elements.values.assign(elements.count * elements.width, 0.0f);
+  forEachElement(file, accessor, elements.count, elementSize, [&](std::size_t i, const std::uint8_t* bytes) {
+    for (std::size_t c = 0; c < elements.width; ++c) {
+      elements.values[i * elements.width + c] = loadFloat(bytes + c * size, type);
+    }
+  });
+  return elements;
+}
+
+std::vector<std::uint32_t> readIndices(GltfFile& file, const JsonView& reference) {
+  const JsonView accessor = file.item("accessors", reference);
+  const JsonView componentType = accessor.at("componentType");
+  const std::size_t type = indexType(componentType);
+  if (accessor.at("type").string() != "SCALAR") {
+    accessor.at("type").refuse(fmt::format("is {}; expected SCALAR for indices", accessor.at("type").string()));
+  }
+  const std::size_t count = checkedCount(accessor);
+  const std::size_t size = componentSize(componentType);
+  if (accessor.find("bufferView")) checkedLayout(file, accessor, count, size, true);
+  std::vector<std::uint32_t> indices(count, 0);
+  forEachElement(file, accessor, count, size,
+                 [&](std::size_t i, const std::uint8_t* bytes) { indices[i] = loadIndex(bytes, type); });
+  return indices;
+}
+
+}  // namespace pellucid::gltf

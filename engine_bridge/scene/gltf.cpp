@@ -1,0 +1,211 @@
+#include "engine_bridge/scene/gltf.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <new>
+#include <set>
+#include <utility>
+
+#include "engine_bridge/scene/materials.h"
+#include "engine_bridge/scene/nodes.h"
+#include "engine_bridge/scene/primitives.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+
+namespace {
+
+using namespace gltf;  // NOLINT: this file is its front door
+
+// Instances one file may have: this, and one more for each of its bytes. A real node takes more than ten.
+constexpr std::size_t kFreeInstances = std::size_t{1} << 20;
+
+void checkExtensions(const GltfFile& file, Notes& notes) {
+  std::set<std::string> required;
+  if (const std::optional<JsonView> list = file.root().find("extensionsRequired")) {
+    for (std::size_t i = 0; i < list->size(); ++i) required.insert(list->at(i).string());
+  }
+  for (const std::string& name : required) {
+    if (supportFor(name) == Support::none) {
+      throw MeaningError(
+          printable(fmt::format("{}: requires the extension {}, which is not supported", file.path(), name)));
+    }
+  }
+  const std::optional<JsonView> used = file.root().find("extensionsUsed");
+  for (std::size_t i = 0; used && i < used->size(); ++i) {
+    const std::string& name = used->at(i).string();
+    if (supportFor(name) == Support::none) notes.add(fmt::format("the extension {} is not drawn", name));
+  }
+  if (file.count("skins") > 0) notes.add("skins are not applied; meshes are drawn in the pose they are stored in");
+  if (file.count("animations") > 0) notes.add("animations are not played; nodes stand where the file puts them");
+}
+
+std::uint32_t mixBits(std::uint32_t hash, std::uint32_t value) {
+  // murmur3's block and finaliser: every bit of every index reaches every bit of the identity.
+  hash ^= value * 0xcc9e2d51u;
+  hash ^= hash >> 16;
+  hash *= 0x85ebca6bu;
+  hash ^= hash >> 13;
+  hash *= 0xc2b2ae35u;
+  hash ^= hash >> 16;
+  return hash + 0xe6546b64u;
+}
+
+std::uint32_t identityOf(std::size_t file, std::size_t node, std::size_t mesh, std::size_t primitive) {
+  std::uint32_t hash = 0x9e3779b9u;
+  for (const std::size_t index : {file, node, mesh, primitive}) hash = mixBits(hash, static_cast<std::uint32_t>(index));
+  return hash;
+}
+
+enum class Facing { kept, mirrored, flat };
+
+// flat: a scale of zero, to within rounding. Such objects are hidden, and have no normals.
+Facing facingOf(const glm::dmat4& worldFromObject) {
+  const glm::dvec3 x(worldFromObject[0]), y(worldFromObject[1]), z(worldFromObject[2]);
+  const double volume = glm::dot(glm::cross(x, y), z);
+  const double cube = glm::length(x) * glm::length(y) * glm::length(z);
+  if (!(std::abs(volume) > 1e-12 * cube)) return Facing::flat;
+  return volume < 0.0 ? Facing::mirrored : Facing::kept;
+}
+
+// One file's meshes and materials on their way into the scene.
+class FileLoader {
+ public:
+  FileLoader(GltfFile& file, std::size_t fileIndex, const SceneOptions& options, Scene& scene, Notes& notes)
+      : file_(file), fileIndex_(fileIndex), options_(options), scene_(scene), notes_(notes), primitives_(file, notes) {}
+
+  void load() {
+    const std::vector<PlacedNode> nodes = placeNodes(file_, options_.metresPerUnit, notes_);
+    readMaterials(nodes);
+    firstInstance_ = scene_.instances.size();
+    for (const PlacedNode& node : nodes) placeMesh(node);
+    readLights(file_, nodes, options_, notes_, scene_.lights);
+    readCameras(file_, nodes, options_.metresPerUnit, scene_.cameras);
+    primitives_.noteCounts();
+  }
+
+ private:
+  std::optional<JsonView> meshOf(const PlacedNode& node) const {
+    const std::optional<JsonView> reference = file_.item("nodes", node.index).find("mesh");
+    if (!reference) return std::nullopt;
+    return file_.item("meshes", *reference).at("primitives");
+  }
+
+  void readMaterials(const std::vector<PlacedNode>& nodes) {
+    const std::size_t count = file_.count("materials");
+    std::vector<bool> used(count, false);
+    std::set<std::size_t> seen;
+    for (const PlacedNode& node : nodes) {
+      const std::optional<JsonView> reference = file_.item("nodes", node.index).find("mesh");
+      if (!reference || !seen.insert(reference->index(file_.count("meshes"), "meshes")).second) continue;
+      const JsonView mesh = *meshOf(node);
+      for (std::size_t i = 0; i < mesh.size(); ++i) {
+        const std::optional<JsonView> material = mesh.at(i).find("material");
+        if (material) used[material->index(count, "materials")] = true;
+      }
+    }
+    firstMaterial_ = scene_.materials.size();
+    TextureReader textures(file_, scene_.textures, notes_);
+    for (std::size_t i = 0; i < count; ++i) {
+      scene_.materials.push_back(readMaterial(file_, i, options_.metresPerUnit, used[i], textures, notes_));
+    }
+  }
+
+  int materialOf(const JsonView& primitive) {
+    const std::optional<JsonView> reference = primitive.find("material");
+    if (reference) return static_cast<int>(firstMaterial_ + reference->index(file_.count("materials"), "materials"));
+    if (default_ < 0) {
+      default_ = static_cast<int>(scene_.materials.size());
+      scene_.materials.push_back(defaultMaterial());
+    }
+    return default_;
+  }
+
+  // Index into the scene's primitives, -1 when there is nothing to draw. Read once, and once more if mirrored.
+  int primitiveOf(std::size_t mesh, std::size_t index, const JsonView& source, bool mirrored) {
+    const auto key = std::make_tuple(mesh, index, mirrored);
+    if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
+    int result = -1;
+    if (mirrored) {
+      const int original = primitiveOf(mesh, index, source, false);
+      if (original >= 0) {
+        result = static_cast<int>(scene_.primitives.size());
+        scene_.primitives.push_back(withFlippedWinding(scene_.primitives[static_cast<std::size_t>(original)]));
+      }
+    } else if (std::optional<Primitive> primitive = primitives_.read(source)) {
+      primitive->material = materialOf(source);
+      result = static_cast<int>(scene_.primitives.size());
+      scene_.primitives.push_back(std::move(*primitive));
+    }
+    loaded_.emplace(key, result);
+    return result;
+  }
+
+  void placeMesh(const PlacedNode& node) {
+    const std::optional<JsonView> mesh = meshOf(node);
+    if (!mesh) return;
+    const JsonView source = file_.item("nodes", node.index);
+    const std::size_t meshIndex = source.at("mesh").index(file_.count("meshes"), "meshes");
+    const Facing facing = facingOf(node.worldFromObject);
+    if (facing == Facing::flat) {
+      notes_.add(fmt::format("node {} has a scale of zero and is not drawn", node.name));
+      return;
+    }
+    for (std::size_t i = 0; i < mesh->size(); ++i) {
+      const int primitive = primitiveOf(meshIndex, i, mesh->at(i), facing == Facing::mirrored);
+      if (primitive < 0) continue;
+      if (scene_.instances.size() - firstInstance_ >= kFreeInstances + file_.bytesRead()) {
+        source.refuse(fmt::format("takes the file beyond {} instances", kFreeInstances + file_.bytesRead()));
+      }
+      Instance instance;
+      instance.worldFromObject = node.worldFromObject;
+      instance.primitive = primitive;
+      instance.node = node.name;
+      instance.identity = identityOf(fileIndex_, node.index, meshIndex, i);
+      scene_.instances.push_back(std::move(instance));
+    }
+  }
+
+  GltfFile& file_;
+  std::size_t fileIndex_;
+  const SceneOptions& options_;
+  Scene& scene_;
+  Notes& notes_;
+  PrimitiveReader primitives_;
+  std::map<std::tuple<std::size_t, std::size_t, bool>, int> loaded_;
+  std::size_t firstMaterial_ = 0, firstInstance_ = 0;
+  int default_ = -1;
+};
+
+void checkOption(double value, const char* flag) {
+  if (!(value > 0.0) || !std::isfinite(value)) {
+    throw UsageError(fmt::format("{} {:g}: expected a finite number above 0", flag, value));
+  }
+}
+
+}  // namespace
+
+Scene loadScene(const std::vector<std::string>& paths, const SceneOptions& options) {
+  checkOption(options.metresPerUnit, "--unit");
+  checkOption(options.lumensPerWatt, "--lumens-per-watt");
+  Scene scene;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    try {
+      GltfFile file(paths[i]);
+      Notes notes(paths[i], scene.notes);
+      checkExtensions(file, notes);
+      FileLoader(file, i, options, scene, notes).load();
+      notes.finish();
+    } catch (const std::bad_alloc&) {
+      throw ResourceError(fmt::format("{}: does not fit in memory", paths[i]));
+    } catch (const std::length_error&) {
+      throw ResourceError(fmt::format("{}: does not fit in memory", paths[i]));
+    }
+  }
+  applyOverrides(options.overrides, scene.materials);
+  return scene;
+}
+
+}  // namespace pellucid

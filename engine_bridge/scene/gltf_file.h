@@ -1,0 +1,56 @@
+// The container: a .gltf with its buffers, or a .glb. Knows JSON and bytes, not what they mean.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine_bridge/scene/json_view.h"
+
+namespace pellucid::gltf {
+
+using Bytes = std::span<const std::uint8_t>;
+
+// The whole of a regular file. Throws InputError when it is missing, not a regular file or unreadable.
+//   whose  begins the sentence: "scene.gltf: buffers[0]"
+std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::string& whose);
+
+// A file of the glTF family, opened: the JSON is parsed and asset.version checked. Throws InputError.
+class GltfFile {
+ public:
+  explicit GltfFile(const std::string& path);
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  JsonView root() const { return JsonView(json_, path_, ""); }
+
+  // Top-level arrays ("nodes", "meshes"); 0 elements when absent.
+  std::size_t count(const char* array) const;
+  JsonView item(const char* array, std::size_t index) const;
+  // The element of `array` that `reference` points at.
+  JsonView item(const char* array, const JsonView& reference) const;
+
+  // The bytes of a buffer view, checked against its buffer. Buffers are read at first use and kept.
+  Bytes viewBytes(const JsonView& view);
+  // The content of a data: URI, or of a file beside this one.
+  std::vector<std::uint8_t> uriBytes(const std::string& uri, const std::string& whose) const;
+  // Everything read so far. What a scene may grow to is measured against it.
+  std::size_t bytesRead() const { return bytesRead_; }
+
+ private:
+  Bytes bufferBytes(std::size_t index);
+  void parseJson(Bytes text);
+
+  std::string path_;
+  std::vector<std::uint8_t> content_;  // of a .glb
+  Bytes binary_;                       // its BIN chunk
+  bool hasBinary_ = false;
+  nlohmann::json json_;
+  std::map<std::size_t, std::vector<std::uint8_t>> buffers_;
+  std::size_t bytesRead_ = 0;
+};
+
+}  // namespace pellucid::gltf

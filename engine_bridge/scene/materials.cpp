@@ -1,0 +1,177 @@
+#include "engine_bridge/scene/materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace pellucid::gltf {
+
+namespace {
+
+constexpr float kMostRadiance = 1e15f;  // leaves room for products in float
+constexpr float kMostDistance = 1e15f;
+constexpr float kMostIor = 100.0f;
+constexpr double kMirrorF0 = 0.999999;  // reflectance of an infinite index, as near as a finite one needs to come
+
+struct MaterialReader {
+  const GltfFile& file;
+  const JsonView source;
+  const bool used;
+  TextureReader& textures;
+  Notes& notes;
+  Material& material;
+
+  TextureRef texture(const JsonView& holder, const char* key, TexelUse use) const {
+    const std::optional<JsonView> info = holder.find(key);
+    return info ? textures.read(*info, use, material.name, used) : TextureRef{};
+  }
+
+  void note(const std::string& sentence) const { notes.add("material " + material.name + ": " + sentence); }
+
+  void base() const {
+    const std::string mode = source.string("alphaMode", "OPAQUE");
+    if (mode == "MASK") {
+      material.alphaMode = AlphaMode::mask;
+    } else if (mode == "BLEND") {
+      material.alphaMode = AlphaMode::blend;
+    } else if (mode != "OPAQUE") {
+      source.at("alphaMode").refuse(fmt::format("is {}; expected OPAQUE, MASK or BLEND", mode));
+    }
+    material.alphaCutoff = source.number("alphaCutoff", 0.5f, 0.0f, 1e6f, notes);  // above 1: nothing is left
+    material.doubleSided = source.boolean("doubleSided", false);
+    if (const std::optional<JsonView> pbr = source.find("pbrMetallicRoughness")) {
+      material.baseColor = pbr->colourAlpha("baseColorFactor", glm::vec4(1.0f), 0.0f, 1.0f, notes);
+      material.metallic = pbr->number("metallicFactor", 1.0f, 0.0f, 1.0f, notes);
+      material.roughness = pbr->number("roughnessFactor", 1.0f, 0.0f, 1.0f, notes);
+      material.baseColorTexture = texture(*pbr, "baseColorTexture", TexelUse::colour);
+      material.metallicRoughnessTexture = texture(*pbr, "metallicRoughnessTexture", TexelUse::data);
+    }
+    material.emission = source.colour("emissiveFactor", glm::vec3(0.0f), 0.0f, 1.0f, notes);
+    material.emissiveTexture = texture(source, "emissiveTexture", TexelUse::colour);
+    if (source.find("normalTexture")) note("its normal texture is not used");
+  }
+
+  void emissiveStrengthAndUnlit() const {
+    if (const auto strength = source.extension("KHR_materials_emissive_strength")) {
+      material.emission *= strength->number("emissiveStrength", 1.0f, 0.0f, kMostRadiance, notes);
+    }
+    material.unlit = source.extension("KHR_materials_unlit").has_value();
+  }
+
+  void transmission() const {
+    const auto extension = source.extension("KHR_materials_transmission");
+    if (!extension) return;
+    material.transmission = extension->number("transmissionFactor", 0.0f, 0.0f, 1.0f, notes);
+    material.transmissionTexture = texture(*extension, "transmissionTexture", TexelUse::data);
+  }
+
+  void indexOfRefraction() const {
+    const auto extension = source.extension("KHR_materials_ior");
+    const auto specular = source.extension("KHR_materials_specular");
+    const float factor = specular ? specular->number("specularFactor", 1.0f, 0.0f, 1.0f, notes) : 1.0f;
+    const glm::vec3 tint = specular
+                               ? specular->colour("specularColorFactor", glm::vec3(1.0f), 0.0f, kMostRadiance, notes)
+                               : glm::vec3(1.0f);
+    const std::optional<JsonView> value = extension ? extension->find("ior") : std::nullopt;
+    if (value && value->number() == 0.0) {
+      // glTF's word for "the specular extension alone says what is reflected", an infinite index without it. The
+      // dielectric of the same reflectance head-on stands for it.
+      const double f0 = std::min(static_cast<double>(factor * std::max({tint.r, tint.g, tint.b})), kMirrorF0);
+      const double root = std::sqrt(f0);
+      material.ior = static_cast<float>((1.0 + root) / (1.0 - root));
+      note(fmt::format("ior 0 is taken as {:.6g}, which reflects as its specular factors say", material.ior));
+      return;
+    }
+    if (value) material.ior = extension->number("ior", 1.5f, 1.0f, kMostIor, notes);
+    const bool plain = factor == 1.0f && tint == glm::vec3(1.0f);
+    const bool textured = specular && (specular->find("specularTexture") || specular->find("specularColorTexture"));
+    if (!plain || textured) note("its specular extension is not used; it reflects as its ior says");
+  }
+
+  void volume(double metresPerUnit) const {
+    const auto extension = source.extension("KHR_materials_volume");
+    if (!extension) return;
+    material.thickness = extension->number("thicknessFactor", 0.0f, 0.0f, kMostDistance, notes);
+    material.volume = material.thickness > 0.0f;
+    material.thicknessTexture = texture(*extension, "thicknessTexture", TexelUse::data);
+    material.attenuationColor = extension->colour("attenuationColor", glm::vec3(1.0f), 0.0f, 1.0f, notes);
+    const std::optional<JsonView> distance = extension->find("attenuationDistance");
+    if (!distance) return;
+    const double metres = distance->number() * metresPerUnit;
+    if (metres <= 0.0) distance->refuse(fmt::format("is {:g}; expected a distance above 0", distance->number()));
+    // Beyond the largest it attenuates nothing that could be seen: the same as absent. Never 0, which means infinite.
+    if (metres < static_cast<double>(kMostDistance))
+      material.attenuationDistance = std::max(static_cast<float>(metres), 1e-30f);
+  }
+
+  void diffuseTransmission() const {
+    const auto extension = source.extension("KHR_materials_diffuse_transmission");
+    if (!extension) return;
+    material.diffuseTransmission = extension->number("diffuseTransmissionFactor", 0.0f, 0.0f, 1.0f, notes);
+    const glm::vec3 tint = extension->colour("diffuseTransmissionColorFactor", glm::vec3(1.0f), 0.0f, 1.0f, notes);
+    const bool textured =
+        extension->find("diffuseTransmissionTexture") || extension->find("diffuseTransmissionColorTexture");
+    if (textured || tint != glm::vec3(1.0f)) note("only the factor of its diffuse transmission is used");
+  }
+
+  void extras() const {
+    const std::optional<JsonView> all = source.find("extras");
+    if (!all || !all->isObject()) return;  // extras may be anything
+    const std::optional<JsonView> ours = all->find("pellucid");
+    if (!ours) return;
+    for (const std::string& key : ours->keys()) {
+      const JsonView value = ours->at(key.c_str());
+      const SetResult result = setKey(material, key, value.scalarText());
+      if (result == SetResult::badValue)
+        value.refuse(fmt::format("is {}; the keys are {}", value.scalarText(), kSetKeys));
+      if (result == SetResult::unknownKey)
+        note(fmt::format("extras.pellucid has no key {}; the keys are {}", key, kSetKeys));
+    }
+  }
+};
+
+}  // namespace
+
+Support supportFor(const std::string& extension) {
+  using namespace std::string_view_literals;
+  constexpr std::string_view kRead[] = {"KHR_lights_punctual"sv,
+                                        "KHR_materials_diffuse_transmission"sv,
+                                        "KHR_materials_emissive_strength"sv,
+                                        "KHR_materials_ior"sv,
+                                        "KHR_materials_specular"sv,
+                                        "KHR_materials_transmission"sv,
+                                        "KHR_materials_unlit"sv,
+                                        "KHR_materials_volume"sv,
+                                        "KHR_texture_transform"sv};
+  constexpr std::string_view kHarmless[] = {"KHR_xmp"sv, "KHR_xmp_json_ld"sv, "KHR_materials_variants"sv};
+  if (std::find(std::begin(kRead), std::end(kRead), extension) != std::end(kRead)) return Support::full;
+  if (std::find(std::begin(kHarmless), std::end(kHarmless), extension) != std::end(kHarmless)) return Support::harmless;
+  return Support::none;
+}
+
+Material readMaterial(const GltfFile& file, std::size_t index, double metresPerUnit, bool used, TextureReader& textures,
+                      Notes& notes) {
+  Material material;
+  const JsonView source = file.item("materials", index);
+  material.name = source.string("name", "");
+  if (material.name.empty()) material.name = fmt::format("material_{}", index);
+  const MaterialReader reader{file, source, used, textures, notes, material};
+  reader.base();
+  reader.emissiveStrengthAndUnlit();
+  reader.transmission();
+  reader.indexOfRefraction();
+  reader.volume(metresPerUnit);
+  reader.diffuseTransmission();
+  reader.extras();
+  return material;
+}
+
+Material defaultMaterial() {
+  Material material;
+  material.name = "default";
+  return material;
+}
+
+}  // namespace pellucid::gltf

@@ -1,0 +1,185 @@
+#include "engine_bridge/scene/nodes.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "gbuffer/errors.h"
+
+namespace pellucid::gltf {
+
+namespace {
+
+constexpr double kMostMagnitude = 1e15;  // metres and scales beyond it leave no room for float products
+
+glm::dmat4 localMatrix(const JsonView& node) {
+  if (const std::optional<JsonView> matrix = node.find("matrix")) {
+    const std::vector<double> m = matrix->numbers(16);
+    if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0) {
+      matrix->refuse("has a last row other than 0 0 0 1; expected an affine transform");
+    }
+    glm::dmat4 local(1.0);
+    for (int column = 0; column < 4; ++column) {
+      for (int row = 0; row < 4; ++row) local[column][row] = m[static_cast<std::size_t>(column * 4 + row)];
+    }
+    return local;
+  }
+  glm::dmat4 local(1.0);
+  if (const std::optional<JsonView> rotation = node.find("rotation")) {
+    const std::vector<double> q = rotation->numbers(4);
+    const glm::dquat quaternion(q[3], q[0], q[1], q[2]);  // glTF: x y z w
+    const double length = glm::length(quaternion);
+    if (!std::isfinite(length) || length < 1e-30) rotation->refuse("has no length; expected a unit quaternion");
+    local = glm::mat4_cast(quaternion / length);
+  }
+  if (const std::optional<JsonView> scale = node.find("scale")) {
+    const std::vector<double> s = scale->numbers(3);
+    for (int column = 0; column < 3; ++column) local[column] *= s[static_cast<std::size_t>(column)];
+  }
+  if (const std::optional<JsonView> translation = node.find("translation")) {
+    const std::vector<double> t = translation->numbers(3);
+    local[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
+  }
+  return local;
+}
+
+void checkMagnitude(const JsonView& node, const glm::dmat4& worldFromObject) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      const double value = worldFromObject[column][row];
+      if (!(std::abs(value) <= kMostMagnitude)) {
+        node.refuse(
+            fmt::format("has a world transform with {:g}; expected magnitudes up to {:g}", value, kMostMagnitude));
+      }
+    }
+  }
+}
+
+//   everyRoot  set when no scene chooses among them
+std::vector<std::size_t> rootNodes(const GltfFile& file, Notes& notes, bool& everyRoot) {
+  const std::size_t count = file.count("nodes");
+  const std::size_t scenes = file.count("scenes");
+  std::vector<std::size_t> roots;
+  std::optional<JsonView> scene;
+  if (const std::optional<JsonView> chosen = file.root().find("scene")) {
+    scene = file.item("scenes", *chosen);
+  } else if (scenes == 1) {
+    scene = file.item("scenes", 0);
+  }
+  everyRoot = !scene;
+  if (scene) {
+    const std::optional<JsonView> nodes = scene->find("nodes");
+    for (std::size_t i = 0; nodes && i < nodes->size(); ++i) roots.push_back(nodes->at(i).index(count, "nodes"));
+    return roots;
+  }
+  if (scenes > 1) notes.add(fmt::format("has {} scenes and no default; the nodes of all are drawn", scenes));
+  std::vector<bool> isChild(count, false);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::optional<JsonView> children = file.item("nodes", i).find("children");
+    for (std::size_t c = 0; children && c < children->size(); ++c)
+      isChild[children->at(c).index(count, "nodes")] = true;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!isChild[i]) roots.push_back(i);
+  }
+  return roots;
+}
+
+}  // namespace
+
+std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, Notes& notes) {
+  const std::size_t count = file.count("nodes");
+  bool everyRoot = false;
+  const std::vector<std::size_t> roots = rootNodes(file, notes, everyRoot);
+  glm::dmat4 metresFromUnits(metresPerUnit);
+  metresFromUnits[3][3] = 1.0;
+  struct Pending {
+    std::size_t index;
+    glm::dmat4 worldFromParent;
+  };
+  // A stack of our own: a chain of a million nodes is no recursion.
+  std::vector<Pending> pending;
+  for (std::size_t i = roots.size(); i-- > 0;) pending.push_back({roots[i], metresFromUnits});
+  std::vector<bool> placed(count, false);
+  std::vector<PlacedNode> nodes;
+  while (!pending.empty()) {
+    const Pending next = pending.back();
+    pending.pop_back();
+    const JsonView node = file.item("nodes", next.index);
+    if (placed[next.index]) node.refuse("is reached twice: it has two parents or is its own ancestor; expected a tree");
+    placed[next.index] = true;
+    PlacedNode result;
+    result.index = next.index;
+    result.name = node.string("name", "");
+    if (result.name.empty()) result.name = fmt::format("node {}", next.index);
+    result.worldFromObject = next.worldFromParent * localMatrix(node);
+    checkMagnitude(node, result.worldFromObject);
+    if (const std::optional<JsonView> children = node.find("children")) {
+      for (std::size_t c = children->size(); c-- > 0;) {
+        pending.push_back({children->at(c).index(count, "nodes"), result.worldFromObject});
+      }
+      if (pending.size() > 2 * count) children->refuse("name more nodes than there are; expected a tree");
+    }
+    nodes.push_back(std::move(result));
+  }
+  // From all the roots every node of a forest is reached.
+  if (everyRoot && nodes.size() < count) throw InputError(file.path() + ": nodes form a cycle; expected a tree");
+  return nodes;
+}
+
+void readCameras(const GltfFile& file, const std::vector<PlacedNode>& nodes, double metresPerUnit,
+                 std::vector<SceneCamera>& cameras) {
+  for (const PlacedNode& placed : nodes) {
+    const JsonView node = file.item("nodes", placed.index);
+    const std::optional<JsonView> reference = node.find("camera");
+    if (!reference) continue;
+    const JsonView source = file.item("cameras", *reference);
+    SceneCamera camera;
+    camera.name = node.string("name", source.string("name", placed.name));
+    const std::string kind = source.at("type").string();
+    if (kind != "perspective" && kind != "orthographic") {
+      source.at("type").refuse(fmt::format("is {}; expected perspective or orthographic", kind));
+    }
+    camera.orthographic = kind == "orthographic";
+    const JsonView lens = source.at(kind.c_str());
+    const auto positive = [&](const char* key, double most) {
+      const double value = lens.at(key).number();
+      if (!(value > 0.0 && value < most))
+        lens.at(key).refuse(fmt::format("is {:g}; expected 0 to {:g}, exclusive", value, most));
+      return value;
+    };
+    if (camera.orthographic) {
+      camera.xmag = positive("xmag", kMostMagnitude) * metresPerUnit;
+      camera.ymag = positive("ymag", kMostMagnitude) * metresPerUnit;
+      camera.znear = lens.at("znear").number();  // 0 is allowed here
+      camera.zfar = positive("zfar", kMostMagnitude);
+    } else {
+      constexpr double kPi = 3.14159265358979323846;
+      camera.yfov = positive("yfov", kPi);
+      if (lens.find("aspectRatio")) camera.aspect = positive("aspectRatio", kMostMagnitude);
+      camera.znear = positive("znear", kMostMagnitude);
+      if (lens.find("zfar")) camera.zfar = positive("zfar", kMostMagnitude);
+    }
+    if (camera.znear < 0.0 || (camera.zfar != 0.0 && camera.zfar <= camera.znear)) {
+      lens.refuse(fmt::format("has znear {:g} and zfar {:g}; expected 0 <= znear < zfar", camera.znear, camera.zfar));
+    }
+    camera.znear *= metresPerUnit;
+    camera.zfar *= metresPerUnit;
+    // A camera's scale and shear do not count (glTF 2.0, Cameras): only where it stands and where it looks.
+    const glm::dmat4& world = placed.worldFromObject;
+    const glm::dvec3 back(world[2]), up(world[1]);
+    const glm::dvec3 z = back / glm::length(back);
+    const glm::dvec3 sideways = glm::cross(up, z);
+    if (!(glm::length(back) > 0.0) || !(glm::length(sideways) > 1e-9 * glm::length(up))) {
+      node.refuse("carries a camera and has a transform without orientation; expected a rotation");
+    }
+    const glm::dvec3 x = sideways / glm::length(sideways);
+    const glm::dmat3 viewFromWorld = glm::transpose(glm::dmat3(x, glm::cross(z, x), z));
+    camera.viewFromWorld = glm::dmat4(viewFromWorld);
+    camera.viewFromWorld[3] = glm::dvec4(-(viewFromWorld * glm::dvec3(world[3])), 1.0);
+    cameras.push_back(std::move(camera));
+  }
+}
+
+}  // namespace pellucid::gltf

@@ -1,0 +1,89 @@
+#include "engine_bridge/scene/uri.h"
+
+namespace pellucid::gltf {
+
+namespace {
+
+int base64Digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+' || c == '-') return 62;
+  if (c == '/' || c == '_') return 63;
+  return -1;
+}
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+bool decodeBase64(std::string_view text, std::vector<std::uint8_t>& bytes) {
+  bytes.clear();
+  int padding = 0;
+  while (padding < 2 && !text.empty() && text.back() == '=') {
+    text.remove_suffix(1);
+    ++padding;
+  }
+  if (text.size() % 4 == 1) return false;
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t window = 0;
+  int bits = 0;
+  for (const char c : text) {
+    const int digit = base64Digit(c);
+    if (digit < 0) return false;
+    window = ((window << 6) | static_cast<std::uint32_t>(digit)) & 0xffffffu;
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes.push_back(static_cast<std::uint8_t>((window >> bits) & 0xffu));
+  }
+  return true;
+}
+
+std::string decodePercent(std::string_view text) {
+  std::string decoded;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool escaped =
+        text[i] == '%' && i + 2 < text.size() && hexDigit(text[i + 1]) >= 0 && hexDigit(text[i + 2]) >= 0;
+    if (!escaped) {
+      decoded.push_back(text[i]);
+      continue;
+    }
+    decoded.push_back(static_cast<char>(hexDigit(text[i + 1]) * 16 + hexDigit(text[i + 2])));
+    i += 2;
+  }
+  return decoded;
+}
+
+bool isDataUri(std::string_view uri) {
+  return uri.substr(0, 5) == "data:";
+}
+
+bool decodeDataUri(std::string_view uri, std::vector<std::uint8_t>& bytes) {
+  const std::size_t comma = uri.find(',');
+  if (!isDataUri(uri) || comma == std::string_view::npos) return false;
+  const std::string_view head = uri.substr(5, comma - 5);
+  const std::string_view content = uri.substr(comma + 1);
+  if (head.ends_with(";base64")) return decodeBase64(content, bytes);
+  const std::string plain = decodePercent(content);
+  bytes.assign(plain.begin(), plain.end());
+  return true;
+}
+
+std::string_view uriScheme(std::string_view uri) {
+  const std::size_t colon = uri.find(':');
+  // One letter before a colon is a drive, not a scheme.
+  if (colon == std::string_view::npos || colon < 2 || uri.find('/') < colon) return {};
+  for (const char c : uri.substr(0, colon)) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    if (!letter && !(c >= '0' && c <= '9') && c != '+' && c != '-' && c != '.') return {};
+  }
+  return uri.substr(0, colon);
+}
+
+}  // namespace pellucid::gltf

@@ -1,0 +1,67 @@
+// Which channel means what: renderers agree on little but the letters. Names are resolved here and nowhere else.
+//
+//   beauty    R G B [A] (red/green/blue/alpha, any case) of no layer, or of rgba, rgb, main, Combined, beauty, Ci, C,
+//   ...
+//             scene-linear, premultiplied
+//   depth     Z, depth.Z, <ViewLayer>.Depth.Z, VRayZDepth.R, WorldDepth.R, ...; never the Z of a vector (N.Z, P.Z)
+//   normal    N, Nn, Normal, normals .X/.Y/.Z, world, unit
+//   position  P, Position, hitP .X/.Y/.Z, world, scene units
+//   AO        AO, [0,1], 1 = open
+//
+// Part names of multi-part files count as layers; views (left, right) are set aside, the first one is the default.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gbuffer/exr_document.h"
+
+namespace pellucid {
+
+// A channel with its name taken apart.
+struct NamedChannel {
+  int part = 0;
+  const ExrChannel* channel = nullptr;
+  std::string fullName;             // as flags and messages say it: with the part in front where there are several
+  std::string layerName;            // fullName without the last word
+  std::vector<std::string> layers;  // lower case, without view and without words that mean nothing (rgba, main)
+  std::string suffix;               // the last word, lower case
+  std::string view;                 // "" when the file has none, or one for all
+};
+std::vector<NamedChannel> nameChannels(const ExrDocument& document);
+
+struct BeautyChannels {
+  int part = 0;
+  std::string layerName, view;
+  std::vector<std::string> layers;
+  const ExrChannel* channel[4] = {};  // R G B A; A may be null
+};
+// Throws MeaningError for none or two (naming both and --beauty), InputError for luminance-chroma.
+//   layer    what --beauty says: a layer, a part, or a view; "" resolves it
+//   blender  Blender's own "Composite" layer, which has no depth, gives way to a view layer
+BeautyChannels resolveBeauty(const ExrDocument& document, const std::vector<NamedChannel>& channels,
+                             const std::string& layer, bool blender);
+
+// The one depth that belongs to the beauty. Throws MeaningError for none or two (naming both and --depth).
+//   name  what --depth says: a channel, with or without its part; "" resolves it
+const NamedChannel& resolveDepth(const ExrDocument& document, const std::vector<NamedChannel>& channels,
+                                 const BeautyChannels& beauty, const std::string& name);
+
+// Three channels, or one, of a pass that belongs to the beauty.
+struct PassChannels {
+  int part = 0;
+  std::string layerName;
+  const ExrChannel* channel[3] = {};
+};
+enum class Pass { normal, position, occlusion };
+// Nothing when there is none. The pass beside the beauty wins over others; of occlusion [1] and [2] may be null.
+std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channels, const BeautyChannels& beauty,
+                                        Pass pass);
+
+// "R, G, B and 30 more"
+std::string listNames(const std::vector<NamedChannel>& channels, std::size_t most = 40);
+
+// Blender's multilayer files say so in their header.
+bool isBlender(const ExrDocument& document);
+
+}  // namespace pellucid

@@ -1,0 +1,246 @@
+#include "gbuffer/deep_io.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineInputPart.h>
+#include <OpenEXR/ImfDeepScanLineOutputPart.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <optional>
+#include <stdexcept>
+
+#include "gbuffer/atomic_file.h"
+#include "gbuffer/errors.h"
+#include "gbuffer/exr_header.h"
+#include "gbuffer/exr_layout.h"
+#include "gbuffer/exr_stream.h"
+
+namespace pellucid {
+namespace {
+
+// Rows whose sample counts are looked at together: as many as keep two cores busy on one-line chunks.
+constexpr int kBandRows = 64;
+// No byte of a deflated stream expands further.
+constexpr std::uint64_t kLargestExpansion = 1032;
+
+// Calls of OpenEXR on an input: what they throw is damage.
+template <class Work>
+auto reading(const std::string& path, Work&& work) {
+  try {
+    return work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(path + ": cannot be read: memory ran out");
+  } catch (const std::length_error&) {
+    throw ResourceError(path + ": cannot be read: memory ran out");
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: damaged: {}", path, error.what()));
+  }
+}
+
+// OpenEXR addresses memory by absolute pixel: the base that puts (x0, y0) at `first`.
+char* baseFor(void* first, const Window& window, std::size_t stride) {
+  const auto back =
+      (static_cast<std::ptrdiff_t>(window.y0) * window.width() + window.x0) * static_cast<std::ptrdiff_t>(stride);
+  return reinterpret_cast<char*>(reinterpret_cast<std::intptr_t>(first) - back);
+}
+
+// Pointers to each pixel's samples, for each channel, and the counts: what a DeepFrameBuffer refers to.
+struct DeepMemory {
+  std::vector<std::uint32_t> counts;
+  std::vector<std::vector<char*>> pointers;
+
+  exr::DeepFrameBuffer frame(const Window& window, const std::vector<std::string>& names) {
+    const auto pixels = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+    const auto width = static_cast<std::size_t>(window.width());
+    counts.resize(pixels);
+    pointers.resize(names.size());
+    exr::DeepFrameBuffer buffer;
+    buffer.insertSampleCountSlice(exr::Slice(exr::UINT, baseFor(counts.data(), window, sizeof(std::uint32_t)),
+                                             sizeof(std::uint32_t), sizeof(std::uint32_t) * width));
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      pointers[c].assign(pixels, nullptr);
+      buffer.insert(names[c], exr::DeepSlice(exr::FLOAT, baseFor(pointers[c].data(), window, sizeof(char*)),
+                                             sizeof(char*), sizeof(char*) * width, sizeof(float)));
+    }
+    return buffer;
+  }
+  void pointInto(const std::vector<std::uint64_t>& offsets, std::size_t pixels,
+                 std::vector<std::vector<float>>& channels) {
+    for (std::size_t c = 0; c < pointers.size(); ++c)
+      for (std::size_t i = 0; i < pixels; ++i)
+        pointers[c][i] = reinterpret_cast<char*>(channels[c].data() + offsets[i]);
+  }
+};
+
+}  // namespace
+
+struct DeepReader::Impl {
+  std::string path;
+  std::vector<std::string> names;
+  ExrSource source;
+  std::optional<exr::MultiPartInputFile> file;
+  std::optional<exr::DeepScanLineInputPart> part;
+  Window display, data;
+  DeepMemory memory;
+  Impl(const std::string& from, const std::vector<std::string>& channels) : path(from), names(channels), source(from) {}
+};
+
+DeepReader::DeepReader(const std::string& path, int part, const std::vector<std::string>& channels)
+    : impl_(std::make_unique<Impl>(path, channels)) {
+  const ExrLayout layout = checkLayout(impl_->source, path);
+  if (part < 0 || part >= static_cast<int>(layout.parts.size()))
+    throw InputError(fmt::format("{}: no part {}: found {} parts", path, part, layout.parts.size()));
+  const ExrPartLayout& chosen = layout.parts[static_cast<std::size_t>(part)];
+  if (!chosen.deep || chosen.tiled)
+    throw InputError(fmt::format("{}: part {}: found {}, expected deep scanlines", path, part,
+                                 chosen.deep ? "deep tiles" : "a flat picture"));
+  reading(path, [&] {
+    impl_->file.emplace(impl_->source, exrThreads(), false);
+    if (!impl_->file->partComplete(part))
+      throw InputError(fmt::format("{}: cut short: part {} is not whole", path, part));
+    const exr::Header& header = impl_->file->header(part);
+    for (const std::string& name : channels)
+      if (!header.channels().findChannel(name))
+        throw MeaningError(fmt::format("{}: part {}: found no channel {}", path, part, name));
+    impl_->display = windowOf(header.displayWindow());
+    impl_->data = windowOf(header.dataWindow());
+    impl_->part.emplace(*impl_->file, part);
+  });
+}
+
+DeepReader::~DeepReader() = default;
+
+const Window& DeepReader::data() const {
+  return impl_->data;
+}
+const Window& DeepReader::display() const {
+  return impl_->display;
+}
+
+DeepRows DeepReader::read(int y0, int y1, std::uint64_t most) {
+  Impl& in = *impl_;
+  if (y0 < in.data.y0 || y1 > in.data.y1 || y0 >= y1) throw std::logic_error("DeepReader: rows outside the file");
+  DeepRows rows;
+  return reading(in.path, [&] {
+    Window window{in.data.x0, y0, in.data.x1, most == UINT64_MAX ? y1 : std::min(y1, y0 + kBandRows)};
+    const exr::DeepFrameBuffer frame = in.memory.frame(window, in.names);
+    in.part->setFrameBuffer(frame);
+    in.part->readPixelSampleCounts(window.y0, window.y1 - 1);
+
+    const auto width = static_cast<std::size_t>(window.width());
+    rows.offsets.assign(1, 0);
+    int end = window.y0;
+    while (end < window.y1) {
+      const std::size_t row = static_cast<std::size_t>(end - window.y0) * width;
+      std::uint64_t samples = rows.offsets.back();
+      for (std::size_t x = 0; x < width; ++x) samples += in.memory.counts[row + x];
+      if (samples > most && end > window.y0) break;
+      for (std::size_t x = 0; x < width; ++x) rows.offsets.push_back(rows.offsets.back() + in.memory.counts[row + x]);
+      ++end;
+    }
+    window.y1 = end;
+    rows.window = window;
+    const std::uint64_t samples = rows.offsets.back();
+    if (samples > in.source.size() * kLargestExpansion)
+      throw InputError(fmt::format("{}: damaged: rows {} to {} claim {} samples, more than {} bytes can hold", in.path,
+                                   window.y0, window.y1 - 1, samples, in.source.size()));
+    rows.channels.assign(in.names.size(), {});
+    for (std::vector<float>& channel : rows.channels) channel.resize(samples);
+    in.memory.pointInto(rows.offsets, width * static_cast<std::size_t>(window.height()), rows.channels);
+    if (!in.names.empty()) in.part->readPixels(window.y0, window.y1 - 1);
+    return std::move(rows);
+  });
+}
+
+struct DeepWriter::Impl {
+  std::string path;
+  DeepHeader header;
+  AtomicFile target;
+  ExrSink sink;
+  std::optional<exr::MultiPartOutputFile> file;
+  std::optional<exr::DeepScanLineOutputPart> part;
+  int next = 0;
+  DeepMemory memory;
+  Impl(const std::string& to, const DeepHeader& h) : path(to), header(h), target(to), sink(target.temporary(), to) {}
+
+  template <class Work>
+  void writing(Work&& work) {
+    try {
+      work();
+    } catch (const std::logic_error&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw ResourceError(path + ": cannot be written: memory ran out");
+    } catch (const std::exception& error) {
+      sink.finish();  // says so when it was the disk
+      throw ResourceError(fmt::format("{}: cannot be written: {}", path, error.what()));
+    }
+  }
+};
+
+DeepWriter::DeepWriter(const std::string& path, const DeepHeader& header)
+    : impl_(std::make_unique<Impl>(path, header)) {
+  impl_->writing([&] {
+    exr::Header out(boxOf(header.display), boxOf(header.data), static_cast<float>(header.pixelAspect));
+    out.setType(exr::DEEPSCANLINE);
+    out.compression() = exr::ZIPS_COMPRESSION;
+    for (const std::string& name : header.channels) out.channels().insert(name, exr::Channel(exr::FLOAT));
+    for (const auto& [name, text] : header.attributes) out.insert(name, exr::StringAttribute(text));
+    if (header.camera) {
+      float matrices[2][4][4];
+      cameraToExr(*header.camera, matrices[0], matrices[1]);
+      exr::addWorldToCamera(out, IMATH_NAMESPACE::M44f(matrices[0]));
+      exr::addWorldToNDC(out, IMATH_NAMESPACE::M44f(matrices[1]));
+    }
+    impl_->file.emplace(impl_->sink, &out, 1, false, exrThreads());
+    impl_->part.emplace(*impl_->file, 0);
+  });
+  impl_->next = header.data.y0;
+}
+
+DeepWriter::~DeepWriter() = default;
+
+void DeepWriter::write(const DeepRows& rows) {
+  Impl& out = *impl_;
+  if (rows.window.y0 != out.next || rows.window.x0 != out.header.data.x0 || rows.window.x1 != out.header.data.x1 ||
+      rows.channels.size() != out.header.channels.size())
+    throw std::logic_error("DeepWriter: rows do not follow");
+  out.writing([&] {
+    const exr::DeepFrameBuffer frame = out.memory.frame(rows.window, out.header.channels);
+    const std::size_t pixels = out.memory.counts.size();
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const std::uint64_t count = rows.offsets[i + 1] - rows.offsets[i];
+      if (count > 0x7fffffffu) throw std::length_error("too many samples on one pixel");
+      out.memory.counts[i] = static_cast<std::uint32_t>(count);
+    }
+    // OpenEXR does not say const, but only reads.
+    for (std::size_t c = 0; c < rows.channels.size(); ++c)
+      for (std::size_t i = 0; i < pixels; ++i)
+        out.memory.pointers[c][i] =
+            reinterpret_cast<char*>(const_cast<float*>(rows.channels[c].data()) + rows.offsets[i]);
+    out.part->setFrameBuffer(frame);
+    out.part->writePixels(rows.window.height());
+  });
+  out.next = rows.window.y1;
+}
+
+void DeepWriter::finish() {
+  Impl& out = *impl_;
+  if (out.next != out.header.data.y1) throw std::logic_error("DeepWriter: rows are missing");
+  out.part.reset();
+  out.file.reset();
+  out.sink.finish();
+  out.target.commit();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,211 @@
+#include "gbuffer/inspect.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "gbuffer/channels.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+namespace {
+
+using nlohmann::json;
+
+// Names in files need not be UTF-8, which JSON is; one odd byte must not lose the report.
+std::string printable(const std::string& text) {
+  std::string clean;
+  for (const char c : text)
+    clean += static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126 ? '?' : c;
+  return clean;
+}
+
+json windowJson(const Window& window) {
+  return {{"x", window.x0}, {"y", window.y0}, {"width", window.width()}, {"height", window.height()}};
+}
+
+// JSON has no infinities.
+json numberJson(double value) {
+  return std::isfinite(value) ? json(value) : json(fmt::format("{}", value));
+}
+
+json attributeJson(const ExrAttribute& attribute) {
+  json report = {{"type", printable(attribute.type)}};
+  if (attribute.type == "string")
+    report["value"] = printable(attribute.bytes.substr(0, 200));
+  else
+    report["bytes"] = attribute.bytes.size();
+  return report;
+}
+
+json partJson(const ExrPart& part) {
+  json channels = json::array();
+  for (const ExrChannel& channel : part.channels)
+    channels.push_back({{"name", printable(channel.name)}, {"type", nameOf(channel.type)}});
+  json attributes = json::object();
+  for (const auto& [name, attribute] : part.attributes) attributes[printable(name)] = attributeJson(attribute);
+  static constexpr const char* kLevels[] = {"one", "mip map", "rip map"};
+  return {{"name", printable(part.name)},
+          {"view", printable(part.view)},
+          {"display", windowJson(part.display)},
+          {"data", windowJson(part.data)},
+          {"pixelAspect", numberJson(part.pixelAspect)},
+          {"compression", part.compression},
+          {"storage", std::string(part.deep ? "deep " : "") + (part.tiled ? "tiles" : "scan lines")},
+          {"levels", kLevels[part.levelMode]},
+          {"channels", channels},
+          {"attributes", attributes}};
+}
+
+// Pixels of each decade of metres, so that a wrong unit or an unknown far value shows.
+json histogramJson(const Image<float>& viewZ) {
+  std::map<int, std::size_t> decades;
+  std::size_t nothing = 0;
+  float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f;
+  for (std::size_t i = 0; i < viewZ.size(); ++i) {
+    const float z = viewZ[i];
+    if (!std::isfinite(z)) {
+      ++nothing;
+      continue;
+    }
+    nearest = std::min(nearest, z);
+    farthest = std::max(farthest, z);
+    ++decades[static_cast<int>(std::floor(std::log10(static_cast<double>(z))))];
+  }
+  json bins = json::array();
+  for (const auto& [decade, count] : decades)
+    bins.push_back({{"from", std::pow(10.0, decade)}, {"to", std::pow(10.0, decade + 1)}, {"pixels", count}});
+  json report = {{"nothing", nothing}, {"decades", bins}};
+  if (farthest > 0.0f) report["nearest"] = nearest, report["farthest"] = farthest;
+  return report;
+}
+
+json cameraJson(const Camera& camera) {
+  json matrix = json::array();
+  for (int row = 0; row < 4; ++row) {
+    json numbers = json::array();
+    for (int column = 0; column < 4; ++column) numbers.push_back(numberJson(camera.viewFromWorld[column][row]));
+    matrix.push_back(numbers);
+  }
+  return {{"origin", printable(camera.origin)},
+          {"projection", camera.orthographic ? "orthographic" : "perspective"},
+          {"viewFromWorld", matrix},
+          {"focal", {numberJson(camera.focal.x), numberJson(camera.focal.y)}},
+          {"centre", {numberJson(camera.centre.x), numberJson(camera.centre.y)}},
+          {"range", {numberJson(camera.rangeNear), numberJson(camera.rangeFar)}}};
+}
+
+json understoodJson(const OpaqueFile& file) {
+  const OpaqueChoice& choice = file.choice;
+  const auto partName = [&](int part) { return printable(file.document.parts[static_cast<std::size_t>(part)].name); };
+  json beauty = json::array();
+  for (const std::string& channel : choice.beautyChannel)
+    if (!channel.empty()) beauty.push_back(printable(channel));
+  json report;
+  report["beauty"] = {{"part", choice.beautyPart},
+                      {"partName", partName(choice.beautyPart)},
+                      {"channels", beauty},
+                      {"alpha", file.gbuffer.hasAlpha},
+                      {"notFinite", choice.nonFiniteColour}};
+  report["depth"] = {{"part", choice.depthPart},
+                     {"partName", partName(choice.depthPart)},
+                     {"channel", printable(choice.depthChannel)},
+                     {"kind", choice.depthKind},
+                     {"far", numberJson(choice.farValue)},
+                     {"metresPerUnit", numberJson(file.metresPerUnit)},
+                     {"notFinite", choice.nonFiniteDepth},
+                     {"precision", numberJson(static_cast<double>(file.gbuffer.depthPrecision))},
+                     {"histogram", histogramJson(file.gbuffer.viewZ)}};
+  report["normals"] = !file.gbuffer.normal.empty();
+  report["occlusion"] = !file.gbuffer.occlusion.empty();
+  report["camera"] = file.gbuffer.camera ? cameraJson(*file.gbuffer.camera) : json();
+  if (file.gbuffer.camera) {
+    try {
+      const std::optional<double> residual = verifyCamera(file, *file.gbuffer.camera);
+      report["camera"]["residualPixels"] = residual ? json(*residual) : json();
+    } catch (const MeaningError& error) {
+      report["camera"]["refusal"] = printable(error.what());
+    }
+  }
+  return report;
+}
+
+std::string windowLine(const json& window) {
+  return fmt::format("{} x {} at ({}, {})", window["width"].get<int>(), window["height"].get<int>(),
+                     window["x"].get<int>(), window["y"].get<int>());
+}
+
+std::string textOf(const json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+}  // namespace
+
+nlohmann::json inspectExr(const std::string& path, const ReadOptions& options) {
+  ExrDocument document = readExr(path);
+  json report;
+  report["file"] = printable(path);
+  report["parts"] = json::array();
+  for (const ExrPart& part : document.parts) report["parts"].push_back(partJson(part));
+  std::vector<std::string> notes = document.notes;
+  try {
+    const OpaqueFile file = interpretOpaque(std::move(document), options);
+    report.update(understoodJson(file));
+    notes = file.notes;
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    report["refusal"] = printable(error.what());
+    report["refusalCode"] = error.exitCode();
+  }
+  report["notes"] = json::array();
+  for (const std::string& note : notes) report["notes"].push_back(printable(note));
+  return report;
+}
+
+std::string inspectionText(const nlohmann::json& report) {
+  std::string text = report["file"].get<std::string>() + "\n";
+  for (std::size_t i = 0; i < report["parts"].size(); ++i) {
+    const json& part = report["parts"][i];
+    const std::string name = part["name"].get<std::string>();
+    text += fmt::format("part {}{}: {}, display {}, {}, {}, {} channels\n", i, name.empty() ? "" : " (" + name + ")",
+                        windowLine(part["data"]), windowLine(part["display"]), part["storage"].get<std::string>(),
+                        part["compression"].get<std::string>(), part["channels"].size());
+    for (const json& channel : part["channels"])
+      text += fmt::format("  {} {}\n", channel["name"].get<std::string>(), channel["type"].get<std::string>());
+  }
+  if (report.contains("beauty")) {
+    std::string names;
+    for (const json& channel : report["beauty"]["channels"]) names += " " + channel.get<std::string>();
+    const auto inPart = [&](const json& choice) {
+      return report["parts"].size() > 1 ? fmt::format(" of part {}", textOf(choice["partName"])) : std::string();
+    };
+    text += fmt::format("beauty:{}{}\n", names, inPart(report["beauty"]));
+    const json& depth = report["depth"];
+    text += fmt::format("depth: {}{}, {}, nothing hit from {}\n", textOf(depth["channel"]), inPart(depth),
+                        depth["kind"].get<std::string>(), textOf(depth["far"]));
+    for (const json& bin : depth["histogram"]["decades"])
+      text += fmt::format("  {:g} to {:g} m: {} pixels\n", bin["from"].get<double>(), bin["to"].get<double>(),
+                          bin["pixels"].get<std::size_t>());
+    text += fmt::format("  nothing: {} pixels\n", depth["histogram"]["nothing"].get<std::size_t>());
+    text += fmt::format("normals: {}\nocclusion: {}\n", report["normals"].get<bool>() ? "yes" : "no",
+                        report["occlusion"].get<bool>() ? "yes" : "no");
+    const json& camera = report["camera"];
+    if (camera.is_null())
+      text += "camera: none in the file\n";
+    else
+      text += fmt::format(
+          "camera: {}, {}{}\n", camera["origin"].get<std::string>(), camera["projection"].get<std::string>(),
+          camera.contains("refusal") ? "; " + camera["refusal"].get<std::string>()
+          : camera["residualPixels"].is_null()
+              ? ", not checked"
+              : fmt::format(", {:.3g} pixels from the positions", camera["residualPixels"].get<double>()));
+  }
+  for (const json& note : report["notes"]) text += "note: " + note.get<std::string>() + "\n";
+  if (report.contains("refusal")) text += "cannot be composited onto: " + report["refusal"].get<std::string>() + "\n";
+  return text;
+}
+
+}  // namespace pellucid

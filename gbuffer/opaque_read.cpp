@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "gbuffer/channels.h"
+#include "gbuffer/depth.h"
+#include "gbuffer/errors.h"
+#include "gbuffer/opaque_io.h"
+#include "gbuffer/pixel_rows.h"
+
+namespace pellucid {
+namespace {
+
+// Below this length an averaged normal says nothing about any surface.
+constexpr float kShortestNormal = 0.5f;
+
+const ExrPart& partOf(const OpaqueFile& file, int index) {
+  return file.document.parts[static_cast<std::size_t>(index)];
+}
+
+std::optional<glm::dmat4> matrixOf(const ExrPart& part, const char* name) {
+  const auto found = part.attributes.find(name);
+  if (found == part.attributes.end() || found->second.type != "m44f" || found->second.bytes.size() != 64)
+    return std::nullopt;
+  float numbers[16];
+  std::memcpy(numbers, found->second.bytes.data(), sizeof numbers);
+  glm::dmat4 rows;
+  for (int i = 0; i < 16; ++i) rows[i / 4][i % 4] = static_cast<double>(numbers[i]);
+  return rows;
+}
+
+double floatOf(const ExrPart& part, const char* name) {
+  const auto found = part.attributes.find(name);
+  if (found == part.attributes.end() || found->second.type != "float" || found->second.bytes.size() != 4) return 0.0;
+  float number = 0;
+  std::memcpy(&number, found->second.bytes.data(), sizeof number);
+  return std::isfinite(number) && number > 0.0f ? static_cast<double>(number) : 0.0;
+}
+
+void readCamera(const ExrPart& part, double unit, OpaqueFile& file) {
+  const auto worldToCamera = matrixOf(part, "worldToCamera"), worldToNdc = matrixOf(part, "worldToNDC");
+  if (worldToCamera.has_value() != worldToNdc.has_value())
+    file.notes.push_back(fmt::format("found the attribute {} without {}, so no camera from the file",
+                                     worldToCamera ? "worldToCamera" : "worldToNDC",
+                                     worldToCamera ? "worldToNDC" : "worldToCamera"));
+  if (!worldToCamera || !worldToNdc) return;
+  try {
+    Camera camera = cameraFromExr(*worldToCamera, *worldToNdc, file.document.path);
+    camera.viewFromWorld[3] = glm::dvec4(glm::dvec3(camera.viewFromWorld[3]) * unit, 1.0);
+    if (camera.orthographic) camera.focal /= unit;
+    camera.rangeNear = unit * floatOf(part, "arnold/camera/near_clip");
+    camera.rangeFar = unit * floatOf(part, "arnold/camera/far_clip");
+    file.gbuffer.camera = camera;
+    if (camera.origin.find(',') != std::string::npos) file.notes.push_back("camera from " + camera.origin);
+  } catch (const MeaningError& error) {
+    file.notes.push_back(error.what());
+  }
+}
+
+void readBeauty(const BeautyChannels& beauty, OpaqueFile& file) {
+  GBuffer& gbuffer = file.gbuffer;
+  const ExrPart& part = partOf(file, beauty.part);
+  gbuffer.beauty = Image<glm::vec4>(gbuffer.data.width(), gbuffer.data.height(), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  for (int c = 0; c < 4; ++c) {
+    if (!beauty.channel[c]) continue;
+    file.choice.beautyChannel[c] = beauty.channel[c]->name;
+    visitPixels(*beauty.channel[c], part.data, gbuffer.data,
+                [&](int x, int y, float value) { gbuffer.beauty.at(x, y)[c] = value; });
+  }
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < gbuffer.beauty.size(); ++i) {
+    const glm::vec4& p = gbuffer.beauty[i];
+    if (std::isfinite(p.r) && std::isfinite(p.g) && std::isfinite(p.b) && std::isfinite(p.a)) continue;
+    if (file.choice.nonFiniteColour++ == 0) first = i;
+  }
+  if (file.choice.nonFiniteColour > 0) {
+    const auto width = static_cast<std::size_t>(gbuffer.data.width());
+    file.notes.push_back(fmt::format("colour {}: {} pixels are not finite, first at ({}, {})",
+                                     beauty.layerName.empty() ? "RGB" : beauty.layerName, file.choice.nonFiniteColour,
+                                     gbuffer.data.x0 + static_cast<int>(first % width),
+                                     gbuffer.data.y0 + static_cast<int>(first / width)));
+  }
+}
+
+// Sample images of OpenEXR's own: DWA keeps all but R, G, B and Y; B44 codes every half; PXR24 rounds floats.
+bool arrivesRounded(const ExrPart& part, const ExrChannel& channel) {
+  const std::string suffix = channel.name.substr(channel.name.rfind('.') + 1);
+  if (part.compression.starts_with("dwa")) return suffix == "R" || suffix == "G" || suffix == "B" || suffix == "Y";
+  if (part.compression.starts_with("b44")) return channel.type == PixelType::half;
+  return part.compression == "pxr24" && channel.type == PixelType::float32;
+}
+
+void noteRounded(const ExrPart& part, const ExrChannel& channel, OpaqueFile& file) {
+  if (arrivesRounded(part, channel))
+    file.notes.push_back(
+        fmt::format("channel {} is data, but {} compression has changed its values", channel.name, part.compression));
+}
+
+void readNormals(const PassChannels& pass, bool zUp, OpaqueFile& file) {
+  GBuffer& gbuffer = file.gbuffer;
+  const ExrPart& part = partOf(file, pass.part);
+  gbuffer.normal = Image<glm::vec3>(gbuffer.data.width(), gbuffer.data.height(), glm::vec3(0.0f));
+  for (int c = 0; c < 3; ++c) {
+    noteRounded(part, *pass.channel[c], file);
+    visitPixels(*pass.channel[c], part.data, gbuffer.data,
+                [&](int x, int y, float value) { gbuffer.normal.at(x, y)[c] = value; });
+  }
+  for (std::size_t i = 0; i < gbuffer.normal.size(); ++i) {
+    glm::vec3& n = gbuffer.normal[i];
+    const float length = std::sqrt(glm::dot(n, n));
+    n = length >= kShortestNormal && std::isfinite(length) ? n / length : glm::vec3(0.0f);
+    if (zUp) n = glm::vec3(n.x, n.z, -n.y);
+  }
+  if (zUp) file.notes.push_back(fmt::format("normals {}: turned from Blender's z-up world to y-up", pass.layerName));
+}
+
+void readOcclusion(const PassChannels& pass, OpaqueFile& file) {
+  GBuffer& gbuffer = file.gbuffer;
+  const ExrPart& part = partOf(file, pass.part);
+  float count = 0.0f;
+  for (const ExrChannel* channel : pass.channel) count += channel ? 1.0f : 0.0f;
+  gbuffer.occlusion = Image<float>(gbuffer.data.width(), gbuffer.data.height(), 0.0f);
+  for (const ExrChannel* channel : pass.channel) {
+    if (!channel) continue;
+    noteRounded(part, *channel, file);
+    visitPixels(*channel, part.data, gbuffer.data,
+                [&](int x, int y, float value) { gbuffer.occlusion.at(x, y) += value / count; });
+  }
+  // Outside the pass, and where it is not a number, nothing occludes.
+  Image<std::uint8_t> covered(gbuffer.data.width(), gbuffer.data.height(), 0);
+  visitPixels(*pass.channel[0], part.data, gbuffer.data, [&](int x, int y, float) { covered.at(x, y) = 1; });
+  for (std::size_t i = 0; i < gbuffer.occlusion.size(); ++i) {
+    float& ao = gbuffer.occlusion[i];
+    ao = covered[i] && std::isfinite(ao) ? std::clamp(ao, 0.0f, 1.0f) : 1.0f;
+  }
+}
+
+void checkOptions(const ReadOptions& options) {
+  if (options.preset != "auto" && options.preset != "blender")
+    throw UsageError(fmt::format("--preset: found '{}', expected auto or blender", options.preset));
+  if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
+    throw UsageError(fmt::format("--unit: found {}, expected metres above 0", options.metresPerUnit));
+}
+
+}  // namespace
+
+OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, const Camera* camera) {
+  checkOptions(options);
+  OpaqueFile file;
+  file.document = std::move(document);
+  file.notes = file.document.notes;
+  file.metresPerUnit = options.metresPerUnit;
+  const bool blender = options.preset == "blender" || isBlender(file.document);
+  const std::vector<NamedChannel> channels = nameChannels(file.document);
+  const BeautyChannels beauty = resolveBeauty(file.document, channels, options.beautyLayer, blender);
+  const ExrPart& part = partOf(file, beauty.part);
+  if (part.levelMode != 0)
+    throw InputError(fmt::format("{}: found a {} map, expected one level: convert it first", file.document.path,
+                                 part.levelMode == 1 ? "mip" : "rip"));
+  const NamedChannel& depth = resolveDepth(file.document, channels, beauty, options.depthChannel);
+
+  GBuffer& gbuffer = file.gbuffer;
+  gbuffer.display = part.display;
+  gbuffer.data = part.data;
+  gbuffer.pixelAspect = part.pixelAspect;
+  gbuffer.hasAlpha = beauty.channel[3] != nullptr;
+  file.choice.beautyPart = beauty.part;
+  file.choice.depthPart = depth.part;
+  file.choice.depthChannel = depth.channel->name;
+  if (!beauty.view.empty() && options.beautyLayer.empty())
+    file.notes.push_back(fmt::format("view {} is used; --beauty names another", beauty.view));
+  readBeauty(beauty, file);
+  readCamera(part, options.metresPerUnit, file);
+  if (!camera && gbuffer.camera) camera = &*gbuffer.camera;
+  noteRounded(partOf(file, depth.part), *depth.channel, file);
+  convertDepth(partOf(file, depth.part), *depth.channel, options, camera, file);
+  if (const auto normals = resolvePass(channels, beauty, Pass::normal)) readNormals(*normals, blender, file);
+  if (const auto occlusion = resolvePass(channels, beauty, Pass::occlusion)) readOcclusion(*occlusion, file);
+  return file;
+}
+
+OpaqueFile readOpaque(const std::string& path, const ReadOptions& options, const Camera* camera) {
+  checkOptions(options);
+  return interpretOpaque(readExr(path), options, camera);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,111 @@
+#include <Imath/half.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "gbuffer/errors.h"
+#include "gbuffer/opaque_io.h"
+
+namespace pellucid {
+namespace {
+
+constexpr float kLargestHalf = 65504.0f;
+
+// Floats to the bytes of a channel. Half rounds to nearest even; finite values beyond its range stay finite.
+class Encoder {
+ public:
+  void put(ExrChannel& channel, std::size_t i, float value) { put(channel.bytes, channel.type, i, value); }
+  void put(std::vector<std::byte>& bytes, PixelType type, std::size_t i, float value) {
+    if (type == PixelType::float32) {
+      std::memcpy(bytes.data() + i * 4, &value, 4);
+      return;
+    }
+    if (std::isfinite(value) && std::abs(value) > kLargestHalf) {
+      value = std::copysign(kLargestHalf, value);
+      ++clamped_;
+    }
+    const std::uint16_t bits = imath_float_to_half(value);
+    std::memcpy(bytes.data() + i * 2, &bits, 2);
+  }
+  void noteTo(std::vector<std::string>& notes) const {
+    if (clamped_ > 0) notes.push_back(fmt::format("{} values beyond 65504, the largest half, became 65504", clamped_));
+  }
+
+ private:
+  std::size_t clamped_ = 0;
+};
+
+std::string channelName(const ExtraLayer& layer, const std::string& suffix) {
+  return layer.name.empty() ? suffix : suffix.empty() ? layer.name : layer.name + "." + suffix;
+}
+
+std::vector<ExrChannel> channelsOf(const std::vector<ExtraLayer>& layers, const Window& data, PixelType type,
+                                   Encoder& encoder) {
+  std::vector<ExrChannel> channels;
+  for (const ExtraLayer& layer : layers)
+    for (const auto& [suffix, plane] : layer.channels) {
+      if (plane.width() != data.width() || plane.height() != data.height())
+        throw std::logic_error(channelName(layer, suffix) + ": a layer of another size than the data window");
+      ExrChannel channel{channelName(layer, suffix), type, std::vector<std::byte>(plane.size() * bytesOf(type))};
+      for (std::size_t i = 0; i < plane.size(); ++i) encoder.put(channel, i, plane[i]);
+      channels.push_back(std::move(channel));
+    }
+  return channels;
+}
+
+}  // namespace
+
+std::vector<std::string> writePicture(const std::string& path, const OpaqueFile& file, const Image<glm::vec4>& picture,
+                                      const Image<std::uint8_t>& touched, const std::vector<ExtraLayer>& layers,
+                                      const std::map<std::string, std::string>& attributes) {
+  const Window& data = file.gbuffer.data;
+  if (picture.width() != data.width() || picture.height() != data.height() || touched.size() != picture.size() ||
+      touched.width() != picture.width())
+    throw std::logic_error("a picture of another size than its G-buffer");
+  const ExrPart& part = file.document.parts[static_cast<std::size_t>(file.choice.beautyPart)];
+  ExrPartEdit edit;
+  edit.attributes = attributes;
+  Encoder encoder;
+  bool anyTouched = false;
+  for (std::size_t i = 0; i < touched.size() && !anyTouched; ++i) anyTouched = touched[i] != 0;
+  for (int c = 0; c < 4 && anyTouched; ++c) {
+    const std::string& name = file.choice.beautyChannel[c];
+    if (name.empty()) continue;
+    const ExrChannel& channel = *part.find(name);
+    std::vector<std::byte> bytes = channel.bytes;
+    for (std::size_t i = 0; i < touched.size(); ++i)
+      if (touched[i]) encoder.put(bytes, channel.type, i, picture[i][c]);
+    edit.replaced[name] = std::move(bytes);
+  }
+  // Extra layers are float: from them the picture can be put together again.
+  edit.added = channelsOf(layers, data, PixelType::float32, encoder);
+  std::vector<std::string> notes = writeExr(path, file.document, {{file.choice.beautyPart, std::move(edit)}});
+  encoder.noteTo(notes);
+  return notes;
+}
+
+std::vector<std::string> writeLayers(const std::string& path, const Window& display, const Window& data,
+                                     const std::vector<ExtraLayer>& layers,
+                                     const std::map<std::string, std::string>& attributes, const Camera* camera,
+                                     bool half) {
+  NewExr file;
+  file.display = display;
+  file.data = data;
+  file.attributes = attributes;
+  Encoder encoder;
+  file.channels = channelsOf(layers, data, half ? PixelType::half : PixelType::float32, encoder);
+  if (camera) {
+    float matrices[2][4][4];
+    cameraToExr(*camera, matrices[0], matrices[1]);
+    file.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);
+    file.matrices["worldToNDC"].assign(&matrices[1][0][0], &matrices[1][0][0] + 16);
+  }
+  writeNewExr(path, file);
+  std::vector<std::string> notes;
+  encoder.noteTo(notes);
+  return notes;
+}
+
+}  // namespace pellucid

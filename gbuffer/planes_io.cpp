@@ -1,0 +1,224 @@
+#include "gbuffer/planes_io.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include "gbuffer/errors.h"
+#include "gbuffer/exr_document.h"
+
+namespace pellucid {
+namespace {
+
+// The contract with whoever else reads these files: name, plane, component. Unit and range as in shaders/shared.
+struct VectorPlane {
+  const char* name;
+  Image<glm::vec4> OitPlanes::*image;
+  int component;
+  bool finite;  // a sum, in which infinity means damage
+};
+constexpr VectorPlane kPlanes[] = {
+    {"oit.A.R", &OitPlanes::radiance, 0, true},   {"oit.A.G", &OitPlanes::radiance, 1, true},
+    {"oit.A.B", &OitPlanes::radiance, 2, true},   {"oit.Wz", &OitPlanes::radiance, 3, true},
+    {"oit.W.R", &OitPlanes::weight, 0, true},     {"oit.W.G", &OitPlanes::weight, 1, true},
+    {"oit.W.B", &OitPlanes::weight, 2, true},     {"oit.count", &OitPlanes::weight, 3, true},
+    {"oit.O.R", &OitPlanes::opacity, 0, true},    {"oit.O.G", &OitPlanes::opacity, 1, true},
+    {"oit.O.B", &OitPlanes::opacity, 2, true},    {"oit.Oz", &OitPlanes::opacity, 3, true},
+    {"oit.tau.R", &OitPlanes::depth, 0, true},    {"oit.tau.G", &OitPlanes::depth, 1, true},
+    {"oit.tau.B", &OitPlanes::depth, 2, true},    {"oit.E.W", &OitPlanes::depth, 3, true},
+    {"oit.E.R", &OitPlanes::light, 0, true},      {"oit.E.G", &OitPlanes::light, 1, true},
+    {"oit.E.B", &OitPlanes::light, 2, true},      {"oit.solid.R", &OitPlanes::solid, 0, true},
+    {"oit.solid.G", &OitPlanes::solid, 1, true},  {"oit.solid.B", &OitPlanes::solid, 2, true},
+    {"oit.solid.Z", &OitPlanes::solid, 3, false},
+};
+constexpr const char* kFrontZ = "oit.front.Z";
+// Only in files of scenes that refract or diffuse; all of them or none.
+constexpr VectorPlane kScatterPlanes[] = {
+    {"oit.delta.X", &OitPlanes::refraction, 0, true}, {"oit.delta.Y", &OitPlanes::refraction, 1, true},
+    {"oit.delta.W", &OitPlanes::refraction, 2, true}, {"oit.D2", &OitPlanes::refraction, 3, true},
+    {"oit.delta.Z", &OitPlanes::light, 3, true},
+};
+constexpr const char* kDiffuseZ = "oit.diffuse.Z";
+
+// Numbers as text that reads back to the same bits.
+class NumberText {
+ public:
+  void add(double value) { text += fmt::format("{}{:.17g}", text.empty() ? "" : " ", value); }
+  std::string text;
+};
+
+std::string cameraText(const Camera& camera) {
+  NumberText numbers;
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r) numbers.add(camera.viewFromWorld[c][r]);
+  for (const double value : {camera.orthographic ? 1.0 : 0.0, camera.focal.x, camera.focal.y, camera.centre.x,
+                             camera.centre.y, camera.rangeNear, camera.rangeFar})
+    numbers.add(value);
+  return numbers.text;
+}
+
+class HeaderReader {
+ public:
+  HeaderReader(const ExrPart& part, const std::string& path) : part_(part), path_(path) {}
+
+  std::string text(const char* name) const {
+    const std::optional<std::string> value = part_.text(name);
+    if (!value)
+      throw MeaningError(
+          fmt::format("{}: not OIT planes: found no attribute {}, expected what accumulate writes", path_, name));
+    return *value;
+  }
+  std::vector<double> numbers(const char* name, std::size_t count, const std::string& from) const {
+    std::istringstream in(from);
+    std::vector<double> values;
+    for (std::string word; in >> word;) {
+      char* end = nullptr;
+      values.push_back(std::strtod(word.c_str(), &end));
+      if (*end || !std::isfinite(values.back())) refuse(name, from);
+    }
+    if (values.size() != count) refuse(name, from);
+    return values;
+  }
+  [[noreturn]] void refuse(const char* name, const std::string& found) const {
+    throw MeaningError(
+        fmt::format("{}: attribute {}: found '{}', expected what accumulate writes", path_, name, found));
+  }
+
+ private:
+  const ExrPart& part_;
+  const std::string& path_;
+};
+
+Camera cameraOf(const HeaderReader& header) {
+  const std::vector<double> n = header.numbers("pellucid:camera", 23, header.text("pellucid:camera"));
+  Camera camera;
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r) camera.viewFromWorld[c][r] = n[static_cast<std::size_t>(c * 4 + r)];
+  camera.orthographic = n[16] != 0.0;
+  camera.focal = {n[17], n[18]};
+  camera.centre = {n[19], n[20]};
+  camera.rangeNear = n[21];
+  camera.rangeFar = n[22];
+  camera.origin = header.text("pellucid:cameraOrigin");
+  return camera;
+}
+
+OitInfo infoOf(const HeaderReader& header) {
+  OitInfo info;
+  info.method = header.text("pellucid:method");
+  info.tier = header.text("pellucid:tier");
+  info.solidHash = header.text("pellucid:solidHash");
+  const std::string normalisation = header.text("pellucid:normalisation");
+  if (normalisation != "spectral" && normalisation != "published")
+    header.refuse("pellucid:normalisation", normalisation);
+  info.normalisation = normalisation == "spectral" ? shading::PLD_NORMALISE_SPECTRAL : shading::PLD_NORMALISE_PUBLISHED;
+  const std::string weight = header.text("pellucid:weight");
+  const std::string name = weight.substr(0, weight.find(' '));
+  info.weight.kind = -1;
+  for (int kind = shading::PLD_WEIGHT_EQ5; kind <= shading::PLD_WEIGHT_UNIFORM; ++kind) {
+    const std::string known = weightText({kind, 0.0f, 0.0f, 0.0f});
+    if (known.substr(0, known.find(' ')) == name) info.weight.kind = kind;
+  }
+  if (info.weight.kind < 0) header.refuse("pellucid:weight", weight);
+  const std::vector<double> range = header.numbers("pellucid:weight", 3, weight.substr(name.size()));
+  info.weight.rangeNear = static_cast<float>(range[0]);
+  info.weight.rangeFar = static_cast<float>(range[1]);
+  info.weight.exponent = static_cast<float>(range[2]);
+  return info;
+}
+
+template <class Put>
+void readPlane(const ExrPart& part, const char* name, bool finite, const std::string& path, Put put) {
+  const ExrChannel* channel = part.find(name);
+  if (!channel) throw MeaningError(fmt::format("{}: no plane {}, expected all that accumulate writes", path, name));
+  if (channel->type != PixelType::float32)
+    throw MeaningError(fmt::format("{}: plane {}: found {}, expected float", path, name, nameOf(channel->type)));
+  const std::size_t pixels = channel->bytes.size() / sizeof(float);
+  const auto width = static_cast<std::size_t>(part.data.width());
+  for (std::size_t i = 0; i < pixels; ++i) {
+    float value = 0;
+    std::memcpy(&value, channel->bytes.data() + i * sizeof value, sizeof value);
+    if (finite ? !std::isfinite(value) : !(value > 0.0f))
+      throw InputError(fmt::format("{}: plane {}: found {} at pixel ({}, {}), expected {}", path, name, value,
+                                   part.data.x0 + static_cast<int>(i % width),
+                                   part.data.y0 + static_cast<int>(i / width),
+                                   finite ? "a finite sum" : "a distance above 0"));
+    put(i, value);
+  }
+}
+
+}  // namespace
+
+void writePlanes(const std::string& path, const OitPlanes& planes) {
+  NewExr file;
+  file.display = planes.display;
+  file.data = planes.data;
+  const auto pixels = static_cast<std::size_t>(planes.data.width()) * static_cast<std::size_t>(planes.data.height());
+  const auto addChannel = [&](const char* name, auto value) {
+    ExrChannel channel{name, PixelType::float32, std::vector<std::byte>(pixels * sizeof(float))};
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const float number = value(i);
+      std::memcpy(channel.bytes.data() + i * sizeof number, &number, sizeof number);
+    }
+    file.channels.push_back(std::move(channel));
+  };
+  for (const VectorPlane& plane : kPlanes) {
+    const Image<glm::vec4>& image = planes.*plane.image;
+    addChannel(plane.name, [&](std::size_t i) { return image[i][plane.component]; });
+  }
+  addChannel(kFrontZ, [&](std::size_t i) { return planes.frontZ[i]; });
+  if (planes.scatters()) {
+    for (const VectorPlane& plane : kScatterPlanes) {
+      const Image<glm::vec4>& image = planes.*plane.image;
+      addChannel(plane.name, [&](std::size_t i) { return image[i][plane.component]; });
+    }
+    addChannel(kDiffuseZ, [&](std::size_t i) { return planes.diffuseZ[i]; });
+  }
+
+  file.attributes = {
+      {"pellucid:method", planes.info.method},
+      {"pellucid:weight", weightText(planes.info.weight)},
+      {"pellucid:normalisation",
+       planes.info.normalisation == shading::PLD_NORMALISE_SPECTRAL ? "spectral" : "published"},
+      {"pellucid:tier", planes.info.tier},
+      {"pellucid:solidHash", planes.info.solidHash},
+      {"pellucid:camera", cameraText(planes.camera)},
+      {"pellucid:cameraOrigin", planes.camera.origin},
+  };
+  float matrices[2][4][4];
+  cameraToExr(planes.camera, matrices[0], matrices[1]);
+  file.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);
+  file.matrices["worldToNDC"].assign(&matrices[1][0][0], &matrices[1][0][0] + 16);
+  writeNewExr(path, file);
+}
+
+OitPlanes readPlanes(const std::string& path) {
+  const ExrDocument document = readExr(path);
+  const ExrPart& part = document.parts[0];
+  const HeaderReader header(part, path);
+  const OitInfo info = infoOf(header);
+  const Camera camera = cameraOf(header);
+  OitPlanes planes = emptyPlanes(part.display, part.data);
+  planes.info = info;
+  planes.camera = camera;
+  for (const VectorPlane& plane : kPlanes) {
+    Image<glm::vec4>& image = planes.*plane.image;
+    readPlane(part, plane.name, plane.finite, path,
+              [&](std::size_t i, float value) { image[i][plane.component] = value; });
+  }
+  readPlane(part, kFrontZ, false, path, [&](std::size_t i, float value) { planes.frontZ[i] = value; });
+  if (part.find(kDiffuseZ)) {
+    addScatterPlanes(planes);
+    for (const VectorPlane& plane : kScatterPlanes) {
+      Image<glm::vec4>& image = planes.*plane.image;
+      readPlane(part, plane.name, plane.finite, path,
+                [&](std::size_t i, float value) { image[i][plane.component] = value; });
+    }
+    readPlane(part, kDiffuseZ, false, path, [&](std::size_t i, float value) { planes.diffuseZ[i] = value; });
+  }
+  return planes;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,28 @@
+// One authored scene: what a renderer would have rendered, and the glass that Pellucid puts over it.
+#pragma once
+#include <vector>
+
+#include "samples/generate/glb.h"
+#include "samples/generate/studio.h"
+#include "samples/generate/view.h"
+
+namespace pellucid::samples {
+
+struct Sample {
+  View view;
+  Studio studio;  // the opaque part
+  Glb glb;        // the transparent part, the camera and the sun
+};
+
+// A new sample is a folder with one of these and a line here.
+Sample bars();
+Sample bottles();
+Sample smoke();
+
+struct Entry {
+  const char* name;
+  Sample (*make)();
+};
+inline const std::vector<Entry> kSamples = {{"bars", bars}, {"bottles", bottles}, {"smoke", smoke}};
+
+}  // namespace pellucid::samples

@@ -1,0 +1,17 @@
+#pragma once
+// What every stage knows about the frame. Mirrors FrameBlock in engine_bridge/gl/blocks.h.
+layout(std140, binding = 0) uniform Frame {
+  mat4 clipFromView;
+  vec4 surroundings;     // rgb constant environment radiance
+  float weightNear;      // metres
+  float weightFar;       // metres
+  float weightExponent;
+  float depthFactor;     // 1 + relative precision of the opaque depth
+  ivec4 band;            // list passes: x, y of the band's top left pixel, its width
+  int lightCount;
+  int orthographic;
+};
+
+// Row 0 is the top row: the pass sets the clip origin to the upper left.
+layout(binding = 5) uniform sampler2D opaqueZ;  // planar metres, +inf where nothing was hit
+layout(binding = 6) uniform sampler2D solid;    // nearest fragment that hides everything: rgb, planar z

@@ -1,0 +1,90 @@
+#pragma once
+// A glTF material under this fragment: the only place that fetches its textures. Mirrors MaterialBlock in
+// engine_bridge/scene/blocks.h.
+#include "shared/material.glsl"
+
+layout(std140, binding = 1) uniform MaterialValues {
+  vec4 baseColor;
+  vec4 emission;            // rgb radiance; a metallic
+  vec4 interface_;          // roughness, transmission, ior, alpha cutoff
+  vec4 volume;              // rgb attenuation colour; a thickness over attenuation distance, object space
+  vec4 covering;            // r factor on coverage, g 1 for a material that only adds light
+  vec4 uvTransforms[10];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
+} material;
+
+layout(binding = 0) uniform sampler2D baseTexture;
+layout(binding = 1) uniform sampler2D metallicRoughnessTexture;
+layout(binding = 2) uniform sampler2D emissiveTexture;
+layout(binding = 3) uniform sampler2D transmissionTexture;
+layout(binding = 4) uniform sampler2D thicknessTexture;
+
+layout(location = 0) in vec3 viewPosition;
+layout(location = 1) in vec3 viewNormal;
+layout(location = 2) in vec4 textureUv;
+layout(location = 3) in vec4 vertexColour;
+
+uniform float thicknessScale;  // metres per unit of object space
+
+vec2 uvOf(int slot) {
+  vec4 u = material.uvTransforms[2 * slot];
+  vec4 v = material.uvTransforms[2 * slot + 1];
+  vec3 uv1 = vec3(u.w == 0.0f ? textureUv.xy : textureUv.zw, 1.0f);
+  return vec2(dot(u.xyz, uv1), dot(v.xyz, uv1));
+}
+
+// Takes derivatives: to be called before any discard.
+float coverageOf(float alpha) {
+#if defined(MASK_SMOOTH)
+  float covered = maskCoverage(alpha, material.interface_.w, fwidth(alpha));
+#elif defined(MASK_HARD)
+  float covered = alpha >= material.interface_.w ? 1.0f : 0.0f;
+#elif defined(BLEND)
+  float covered = clamp(alpha, 0.0f, 1.0f);
+#else
+  float covered = 1.0f;
+#endif
+  return covered * material.covering.r;
+}
+
+// Takes derivatives: to be called before any discard.
+Surface surfaceHere() {
+  MaterialPoint point;
+  point.base = material.baseColor;
+  point.emission = material.emission.rgb;
+  point.metallic = material.emission.a;
+  point.roughness = material.interface_.r;
+  point.transmission = material.interface_.g;
+  point.ior = material.interface_.b;
+  vec3 attenuation = vec3(1.0f);
+#ifdef VERTEX_COLOUR
+  point.base *= vertexColour;
+#endif
+#ifdef BASE_TEXTURE
+  point.base *= texture(baseTexture, uvOf(0));
+#endif
+#ifdef METALLIC_ROUGHNESS_TEXTURE
+  vec4 metallicRoughness = texture(metallicRoughnessTexture, uvOf(1));
+  point.roughness *= metallicRoughness.g;
+  point.metallic *= metallicRoughness.b;
+#endif
+#ifdef EMISSIVE_TEXTURE
+  point.emission *= texture(emissiveTexture, uvOf(2)).rgb;
+#endif
+#ifdef TRANSMISSION_TEXTURE
+  point.transmission *= texture(transmissionTexture, uvOf(3)).r;
+#endif
+#ifdef VOLUME
+  float ratio = material.volume.a * thicknessScale;
+#ifdef THICKNESS_TEXTURE
+  ratio *= texture(thicknessTexture, uvOf(4)).g;
+#endif
+  // What enters on a front face leaves through a back face: counted once.
+  if (gl_FrontFacing) attenuation = attenuationOf(material.volume.rgb, ratio);
+#endif
+#ifdef UNLIT
+  bool unlit = true;
+#else
+  bool unlit = false;
+#endif
+  return surfaceOf(point, coverageOf(point.base.a), attenuation, unlit);
+}

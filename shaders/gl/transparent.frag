@@ -1,0 +1,67 @@
+// One transparent fragment: fetch, shade through the shared model, write. Defines choose the output (OUTPUT_SUMS,
+// OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID), what the material has and what the frame needs.
+#include "gl/frame.glsl"
+#include "gl/material.glsl"
+#include "gl/lights.glsl"
+#if defined(OUTPUT_SUMS)
+#include "gl/sums_output.glsl"
+#elif defined(OUTPUT_COUNT)
+layout(location = 0) out float fragmentCount;
+#elif defined(OUTPUT_LIST)
+#include "gl/list_output.glsl"
+#else
+layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
+const float kClipNear = 1e-7f;                // as in gbuffer/camera.h
+#endif
+
+void main() {
+  Surface surface = surfaceHere();
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float z = -viewPosition.z;
+  if (!(z > 0.0f) || !(surface.coverage > 0.0f)) discard;
+  if (z > texelFetch(opaqueZ, pixel, 0).r * depthFactor) discard;
+
+  float cosEye = 1.0f;
+  vec3 reflected = vec3(0.0f);
+#ifdef UNLIT
+  reflected = surface.baseColor;
+#else
+  vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
+  vec3 normal = normalTowardsEye(viewNormal, gl_FrontFacing, toEye);
+  cosEye = clamp(dot(normal, toEye), PLD_GRAZING, 1.0f);
+#ifdef SURROUNDINGS
+  reflected = reflectSurroundings(surface, cosEye) * surroundings.rgb;
+#endif
+#ifdef LIGHTS
+  for (int i = 0; i < lightCount; ++i) {
+    Arriving arriving = arrivingAt(lights[i], viewPosition);
+    reflected += reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
+  }
+#endif
+#endif
+  Layer layer = layerOf(surface, reflected, cosEye, z, material.covering.g != 0.0f);
+  layer.radiance = min(layer.radiance, vec3(PLD_BRIGHTEST));
+  bool hidesAll = isSolid(layer.coverage, layer.transmission);
+
+#ifdef OUTPUT_SOLID
+  if (!hidesAll) discard;
+  solidRadiance = vec4(layer.radiance, z);
+  gl_FragDepth = kClipNear / z;
+#else
+#ifdef SOLIDS
+  if (hidesAll || z > texelFetch(solid, pixel, 0).a) discard;
+#endif
+#if defined(OUTPUT_SUMS)
+  WeightSettings settings;
+  settings.kind = WEIGHT;
+  settings.rangeNear = weightNear;
+  settings.rangeFar = weightFar;
+  settings.exponent = weightExponent;
+  writeSums(layer, settings);
+#elif defined(OUTPUT_COUNT)
+  fragmentCount = 1.0f;
+#else
+  appendFragment(layer, pixel);
+#endif
+#endif
+}

@@ -1,0 +1,35 @@
+#pragma once
+// A vertex, from attributes; or pulled from storage, where each triangle must know its number: gl_PrimitiveID does not
+// survive clipping on Mesa's software rasteriser.
+#ifdef OUTPUT_LIST
+// Mirrors Vertex in engine_bridge/scene/scene.h, 64 bytes.
+struct PulledVertex {
+  vec4 positionNormalX;
+  vec4 normalYzUv0;
+  vec4 uv1ColourRg;
+  vec4 colourBaSpare;
+};
+layout(std430, binding = 5) readonly buffer Vertices { PulledVertex vertices[]; };
+layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
+layout(std430, binding = 2) readonly buffer TriangleNumbers { uint triangleNumbers[]; };  // within the primitive
+
+layout(location = 4) flat out uint triangleNumber;
+vec3 position, normal;
+vec4 uv, colour;
+
+void fetchVertex() {
+  PulledVertex v = vertices[indices[gl_VertexID]];
+  position = v.positionNormalX.xyz;
+  normal = vec3(v.positionNormalX.w, v.normalYzUv0.xy);
+  uv = vec4(v.normalYzUv0.zw, v.uv1ColourRg.xy);
+  colour = vec4(v.uv1ColourRg.zw, v.colourBaSpare.xy);
+  triangleNumber = triangleNumbers[gl_VertexID / 3];
+}
+#else
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 uv;  // TEXCOORD_0, TEXCOORD_1
+layout(location = 3) in vec4 colour;
+
+void fetchVertex() {}
+#endif

@@ -1,0 +1,264 @@
+// Images, samplers, transforms.
+#include <OpenImageIO/imageio.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/scene/builder.h"
+
+namespace pellucid::test {
+namespace {
+
+template <class T>
+std::vector<std::uint8_t> encode(const std::string& extension, int width, int height, int channels, OIIO::TypeDesc type,
+                                 const std::vector<T>& pixels) {
+  const std::string path = (testFolder() / ("made." + extension)).string();
+  OIIO::ImageSpec spec(width, height, channels, type);
+  if (channels == 2 || channels == 4) spec.alpha_channel = channels - 1;
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const auto writer = OIIO::ImageOutput::create(path);
+  EXPECT_TRUE(writer && writer->open(path, spec) && writer->write_image(type, pixels.data()) && writer->close());
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// A material "glass" whose base colour (and on request transmission) is this image, packed in the GLB.
+Builder withImage(const std::vector<std::uint8_t>& image, const Json& textureInfo = {{"index", 0}}) {
+  Builder builder;
+  builder.material({{"name", "glass"}, {"pbrMetallicRoughness", {{"baseColorTexture", textureInfo}}}});
+  builder.json["images"] = Json::array({{{"bufferView", builder.view(image.data(), image.size())}}});
+  builder.json["textures"] = Json::array({{{"source", 0}}});
+  return builder;
+}
+
+std::vector<std::uint8_t> redPng() {
+  return encode<std::uint8_t>("png", 1, 1, 3, OIIO::TypeDesc::UINT8, {255, 0, 0});
+}
+
+// Written from IEC 61966-2-1, apart from the code under test.
+double srgb(double e) {
+  return e <= 0.04045 ? e / 12.92 : std::pow((e + 0.055) / 1.055, 2.4);
+}
+
+TEST(Textures, ColourIsDecodedAndAlphaStaysStraight) {
+  std::vector<std::uint8_t> pixels;
+  for (int i = 0; i < 256; ++i) {
+    for (const int v : {i, 255 - i, 128, i}) pixels.push_back(static_cast<std::uint8_t>(v));
+  }
+  const Scene scene = withImage(encode("png", 16, 16, 4, OIIO::TypeDesc::UINT8, pixels)).load();
+  ASSERT_EQ(scene.textures.size(), 1u);
+  const Texture& texture = scene.textures[0];
+  ASSERT_EQ(texture.texels.width(), 16);
+  for (int i = 0; i < 256; ++i) {
+    const glm::vec4 texel = texture.texels.at(i % 16, i / 16);
+    // One float rounding of the exact value.
+    EXPECT_EQ(texel.r, static_cast<float>(srgb(static_cast<double>(static_cast<float>(i) / 255.0f)))) << i;
+    EXPECT_NEAR(static_cast<double>(texel.g), srgb((255 - i) / 255.0), 1e-7) << i;
+    EXPECT_NEAR(static_cast<double>(texel.b), 0.2158605, 1e-7) << "colour at alpha " << i << " is not premultiplied";
+    EXPECT_EQ(texel.a, static_cast<float>(i) / 255.0f);
+  }
+}
+
+TEST(Textures, TheSameImageAsDataStaysRaw) {
+  Builder builder = withImage(encode<std::uint8_t>("png", 2, 1, 3, OIIO::TypeDesc::UINT8, {128, 64, 32, 0, 255, 1}));
+  builder.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 0}};
+  builder.json["materials"][0]["emissiveTexture"] = {{"index", 0}};
+  builder.json["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionTexture"] = {{"index", 0}};
+  builder.json["materials"][0]["extensions"]["KHR_materials_volume"]["thicknessTexture"] = {{"index", 0}};
+  const Scene scene = builder.load();
+  ASSERT_EQ(scene.textures.size(), 2u) << "one for colour, one for data";
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.baseColorTexture.texture, material.emissiveTexture.texture);
+  EXPECT_EQ(material.metallicRoughnessTexture.texture, material.transmissionTexture.texture);
+  EXPECT_EQ(material.metallicRoughnessTexture.texture, material.thicknessTexture.texture);
+  const Texture& data = scene.textures.at(static_cast<std::size_t>(material.transmissionTexture.texture));
+  EXPECT_EQ(data.texels.at(0, 0), glm::vec4(128.0f / 255.0f, 64.0f / 255.0f, 32.0f / 255.0f, 1.0f));
+  EXPECT_EQ(data.texels.at(1, 0), glm::vec4(0.0f, 1.0f, 1.0f / 255.0f, 1.0f));
+}
+
+TEST(Textures, GreyGreyAlphaAndSixteenBits) {
+  const Texture grey =
+      withImage(encode<std::uint8_t>("png", 1, 1, 1, OIIO::TypeDesc::UINT8, {255})).load().textures.at(0);
+  EXPECT_EQ(grey.texels.at(0, 0), glm::vec4(1.0f));
+  const Texture greyAlpha =
+      withImage(encode<std::uint8_t>("png", 1, 1, 2, OIIO::TypeDesc::UINT8, {255, 51})).load().textures.at(0);
+  EXPECT_EQ(greyAlpha.texels.at(0, 0), glm::vec4(1.0f, 1.0f, 1.0f, 0.2f));
+  const Texture deep =
+      withImage(encode<std::uint16_t>("png", 1, 1, 3, OIIO::TypeDesc::UINT16, {32768, 0, 65535})).load().textures.at(0);
+  EXPECT_NEAR(static_cast<double>(deep.texels.at(0, 0).r), srgb(32768.0 / 65535.0), 1e-7);
+  EXPECT_EQ(deep.texels.at(0, 0).b, 1.0f);
+}
+
+TEST(Textures, JpegFromADataUriAndFloatExrFromAFile) {
+  const std::vector<std::uint8_t> pixels(8 * 8 * 3, 255);
+  const std::vector<std::uint8_t> jpeg = encode("jpg", 8, 8, 3, OIIO::TypeDesc::UINT8, pixels);
+  // The signature decides, not the name.
+  writeBytes(testFolder() / "photo of glass.png", jpeg.data(), jpeg.size());
+  Builder builder = withImage(redPng());
+  builder.json["images"][0] = {{"uri", "photo%20of%20glass.png"}};
+  const Scene scene = builder.load();
+  EXPECT_EQ(scene.textures.at(0).name, "photo of glass.png");
+  EXPECT_EQ(scene.textures.at(0).texels.at(7, 7), glm::vec4(1.0f));
+
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<std::uint8_t> exr = encode<float>("exr", 1, 1, 4, OIIO::TypeDesc::FLOAT, {0.5f, 3.0f, nan, 0.25f});
+  Builder linear = withImage(exr);
+  const Scene floats = linear.load();
+  EXPECT_EQ(floats.textures.at(0).texels.at(0, 0).r, 0.5f) << "floating-point images are linear as stored";
+  EXPECT_EQ(floats.textures.at(0).texels.at(0, 0).b, 0.0f);
+  EXPECT_TRUE(noted(floats, "negative or not finite"));
+
+  Builder inlined = withImage(redPng());
+  inlined.json["images"][0] = {
+      {"uri",
+       "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/"
+       "pLvAAAAAElFTkSuQmCC"}};
+  EXPECT_EQ(inlined.load().textures.at(0).texels.at(0, 0), glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
+}
+
+TEST(Textures, RowZeroIsTheTop) {
+  const Scene scene =
+      withImage(encode<std::uint8_t>("png", 1, 2, 3, OIIO::TypeDesc::UINT8, {255, 0, 0, 0, 0, 255})).load();
+  EXPECT_EQ(scene.textures.at(0).texels.at(0, 0).r, 1.0f);
+  EXPECT_EQ(scene.textures.at(0).texels.at(0, 1).b, 1.0f);
+}
+
+TEST(Textures, Samplers) {
+  Builder builder = withImage(redPng());
+  builder.json["samplers"] = Json::array({{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}});
+  const Texture plain = builder.load().textures.at(0);
+  EXPECT_EQ(plain.wrapS, Wrap::repeat);
+  EXPECT_FALSE(plain.nearest);
+  builder.json["textures"][0]["sampler"] = 0;
+  const Texture texture = builder.load().textures.at(0);
+  EXPECT_EQ(texture.wrapS, Wrap::clamp);
+  EXPECT_EQ(texture.wrapT, Wrap::mirror);
+  EXPECT_TRUE(texture.nearest);
+  builder.json["samplers"][0]["wrapS"] = 1;
+  expectRefusal(refusalOf(builder), 3, {"samplers[0].wrapS", "33071"});
+}
+
+TEST(Textures, TransformAndItsTexCoord) {
+  const Json info = {{"index", 0},
+                     {"texCoord", 0},
+                     {"extensions",
+                      {{"KHR_texture_transform",
+                        {{"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}, {"texCoord", 1}}}}}};
+  const TextureRef ref = withImage(redPng(), info).load().materials.at(0).baseColorTexture;
+  EXPECT_EQ(ref.texCoord, 1);
+  const auto moved = [&](float u, float v) { return glm::vec2(ref.uvTransform * glm::vec3(u, v, 1.0f)); };
+  // The extension's own example: "only the lower left quadrant of the source image, rotated clockwise 90 degrees".
+  const auto expect = [](glm::vec2 found, glm::vec2 expected) {
+    EXPECT_NEAR(found.x, expected.x, 1e-6f);
+    EXPECT_NEAR(found.y, expected.y, 1e-6f);
+  };
+  expect(moved(0, 0), {0.0f, 1.0f});
+  expect(moved(1, 0), {0.0f, 0.5f});
+  expect(moved(0, 1), {0.5f, 1.0f});
+  expect(moved(1, 1), {0.5f, 0.5f});
+}
+
+TEST(Textures, TransformOrderIsScaleThenRotationThenOffset) {
+  const Json info = {
+      {"index", 0},
+      {"extensions",
+       {{"KHR_texture_transform", {{"rotation", 1.57079632679}, {"scale", {2, 3}}, {"offset", {0.25, 0}}}}}}};
+  const TextureRef ref = withImage(redPng(), info).load().materials.at(0).baseColorTexture;
+  const glm::vec3 moved = ref.uvTransform * glm::vec3(1.0f, 1.0f, 1.0f);  // (2,3) -> (3,-2) -> (3.25,-2)
+  EXPECT_NEAR(moved.x, 3.25f, 1e-5f);
+  EXPECT_NEAR(moved.y, -2.0f, 1e-5f);
+}
+
+TEST(Textures, WhatCannotBeReadNamesMaterialAndFile) {
+  Builder missing = withImage(redPng());
+  missing.json["images"][0] = {{"uri", "gone/wood.png"}};
+  expectRefusal(refusalOf(missing), 3, {"scene.glb", "material glass", "gone/wood.png", "does not exist"});
+
+  Builder twoLines = withImage(redPng());
+  twoLines.json["materials"][0]["name"] = "two\nlines";
+  twoLines.json["images"][0] = {{"uri", "a\nb.png"}};
+  expectRefusal(refusalOf(twoLines), 3, {"material two lines", "a b.png"});
+
+  const std::vector<std::uint8_t> noise = {'n', 'o', 'i', 's', 'e'};
+  Builder foreign = withImage(noise);
+  expectRefusal(refusalOf(foreign), 3, {"material glass", "PNG or JPEG"});
+
+  Builder empty = withImage(noise);
+  empty.json["images"][0] = {{"uri", "data:image/png;base64,"}};
+  expectRefusal(refusalOf(empty), 3, {"material glass", "empty"});
+
+  Builder far = withImage(redPng(), {{"index", 0}, {"texCoord", 2}});
+  expectRefusal(refusalOf(far), 4, {"material glass", "TEXCOORD_2"});
+
+  Builder basis = withImage(redPng());
+  basis.json["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  expectRefusal(refusalOf(basis), 4, {"material glass", "KHR_texture_basisu"});
+
+  Builder beyond = withImage(redPng());
+  beyond.json["textures"][0]["source"] = 1;
+  expectRefusal(refusalOf(beyond), 3, {"textures[0].source", "below 1"});
+}
+
+TEST(Textures, CutImagesAreRefusedAtEveryLength) {
+  std::vector<std::uint8_t> pixels;
+  for (int i = 0; i < 16 * 16 * 3; ++i) pixels.push_back(static_cast<std::uint8_t>(i * i % 251));
+  for (const char* format : {"png", "jpg"}) {
+    const std::vector<std::uint8_t> whole = encode(format, 16, 16, 3, OIIO::TypeDesc::UINT8, pixels);
+    Builder builder = withImage(whole);
+    EXPECT_EQ(refusalOf(builder).sentence, "");
+    for (std::size_t size = 1; size < whole.size(); ++size) {
+      Builder cut = withImage({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+      expectRefusal(refusalOf(cut), 3, {"scene.glb", "material glass", "image 0"});
+    }
+  }
+}
+
+TEST(Textures, OneWrongByteIsReadOrRefused) {
+  // Fixed integer sequence; the sanitizers watch what the decoders make of it.
+  std::vector<std::uint8_t> pixels;
+  for (int i = 0; i < 8 * 8 * 4; ++i) pixels.push_back(static_cast<std::uint8_t>(i * 7 % 251));
+  for (const char* format : {"png", "jpg"}) {
+    const int channels = std::string(format) == "png" ? 4 : 3;
+    const std::vector<std::uint8_t> whole = encode(format, 8, 8, channels, OIIO::TypeDesc::UINT8, pixels);
+    std::uint32_t state = 99;
+    int loaded = 0, refused = 0;
+    for (std::size_t at = 8; at < whole.size(); ++at) {
+      std::vector<std::uint8_t> bent = whole;
+      state = state * 1664525u + 1013904223u;
+      bent[at] = static_cast<std::uint8_t>(state >> 24);
+      Builder builder = withImage(bent);
+      const Refusal refusal = refusalOf(builder);
+      EXPECT_TRUE(refusal.code == 0 || refusal.code == 3) << refusal.sentence;
+      (refusal.code == 0 ? loaded : refused) += 1;
+    }
+    std::printf("%s with one wrong byte: %d loaded, %d refused\n", format, loaded, refused);
+    EXPECT_GT(refused, 0);
+  }
+}
+
+TEST(Textures, AnImageThatClaimsToBeHugeIsRefusedBeforeItIsAllocated) {
+  // A PNG header of 60000 x 60000 pixels, with its checksum, and nothing behind it but the end.
+  const std::vector<std::uint8_t> bomb = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,    0, 0,    13,
+                                          'I',  'H', 'D', 'R', 0,    0,    0xea, 0x60, 0,    0, 0xea, 0x60,
+                                          8,    2,   0,   0,   0,    0x0f, 0xb0, 0xe2, 0x15, 0, 0,    0,
+                                          0,    'I', 'E', 'N', 'D',  0xae, 0x42, 0x60, 0x82};
+  Builder builder = withImage(bomb);
+  expectRefusal(refusalOf(builder), 3, {"material glass", "60000x60000", "16384"});
+}
+
+TEST(Textures, ImagesOfMaterialsThatNothingDrawsAreNotOpened) {
+  Builder builder;
+  builder.triangle();
+  builder.json["materials"] =
+      Json::array({{{"name", "unused"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  builder.json["images"] = Json::array({{{"uri", "gone.png"}}});
+  builder.json["textures"] = Json::array({{{"source", 0}}});
+  const Scene scene = builder.load();
+  EXPECT_EQ(scene.materials.at(0).name, "unused");
+  EXPECT_TRUE(scene.textures.empty());
+  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+  EXPECT_EQ(refusalOf(builder).code, 3);
+}
+
+}  // namespace
+}  // namespace pellucid::test
