@@ -18,8 +18,8 @@ struct OitInfo {
   std::string solidHash;  // of the solid plane: sums behind different solids do not add
 };
 
-// RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl and refraction.glsl pack them; every plane
-// is a sum, but for frontZ and diffuseZ (minima) and solid (the nearest).
+// RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl and refraction.glsl pack them; every
+// plane is a sum, but for frontZ and diffuseZ (minima) and solid (the nearest).
 struct OitPlanes {
   Window display, data;
   OitInfo info;

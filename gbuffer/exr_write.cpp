@@ -44,10 +44,19 @@ bool losesBits(const ExrPart& part, const ExrPartEdit& edit) {
   return false;
 }
 
+// OpenEXR's Header::erase forgets to free what it erases.
+exr::Header without(const exr::Header& header, const std::string& attribute) {
+  exr::Header rest;
+  for (auto it = header.begin(); it != header.end(); ++it)
+    if (it.name() != attribute) rest.insert(it.name(), it.attribute());
+  return rest;
+}
+
 exr::Header editedHeader(const ExrPart& part, const ExrPartEdit& edit, std::vector<std::string>& notes) {
   exr::Header header = part.header->header;
   for (const auto& [name, text] : edit.attributes) {
-    header.erase(name);
+    const auto old = part.attributes.find(name);
+    if (old != part.attributes.end() && old->second.type != "string") header = without(header, name);
     header.insert(name, exr::StringAttribute(text));
   }
   for (const ExrChannel& channel : edit.added)
@@ -92,7 +101,7 @@ void writeLines(Output& out, const exr::FrameBuffer& frame, const Window& data) 
 // Single-part files without the multi-part bit, so that no attribute appears that was not there.
 void writeSinglePart(ExrSink& sink, exr::MultiPartInputFile& file, const ExrPart& part, const ExrPartEdit& edit,
                      exr::Header header) {
-  if (!part.header->hadType) header.erase("type");
+  if (!part.header->hadType) header = without(header, "type");
   if (part.tiled) {
     exr::TiledOutputFile out(sink, header, exrThreads());
     if (changesPixels(edit)) {

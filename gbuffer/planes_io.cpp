@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -197,6 +198,7 @@ void writePlanes(const std::string& path, const OitPlanes& planes) {
 OitPlanes readPlanes(const std::string& path) {
   const ExrDocument document = readExr(path);
   const ExrPart& part = document.parts[0];
+  if (part.deep) throw MeaningError(path + ": not OIT planes: found deep samples, expected what accumulate writes");
   const HeaderReader header(part, path);
   const OitInfo info = infoOf(header);
   const Camera camera = cameraOf(header);
@@ -209,7 +211,9 @@ OitPlanes readPlanes(const std::string& path) {
               [&](std::size_t i, float value) { image[i][plane.component] = value; });
   }
   readPlane(part, kFrontZ, false, path, [&](std::size_t i, float value) { planes.frontZ[i] = value; });
-  if (part.find(kDiffuseZ)) {
+  const bool scatters = std::any_of(std::begin(kScatterPlanes), std::end(kScatterPlanes),
+                                    [&](const VectorPlane& plane) { return part.find(plane.name) != nullptr; });
+  if (scatters || part.find(kDiffuseZ)) {
     addScatterPlanes(planes);
     for (const VectorPlane& plane : kScatterPlanes) {
       Image<glm::vec4>& image = planes.*plane.image;

@@ -68,10 +68,10 @@ void composite(const CompositeFlags& flags) {
                        {"notFinite", error.nonFinite}};
     if (!flags.run.json) fmt::print("error of {} against sorted over: {}\n", flags.method.method, errorLine(error));
   }
-  stages.time("write", [&] {
-    writePicture(flags.output, shot->opaque, picture.rgba, picture.touched, requestedLayers(flags.layers, veil),
+  say(stages.time("write", [&] {
+    return writePicture(flags.output, shot->opaque, picture.rgba, picture.touched, requestedLayers(flags.layers, veil),
                  {{"pellucid:method", flags.method.method}});
-  });
+  }));
   reportRun(flags.run, stages, counts, context->description(), report);
 }
 

@@ -39,10 +39,10 @@ void resolveVerb(const ResolveFlags& flags) {
   settings.selfModulation = flags.selfModulation;
   const Veil veil = stages.time("resolve", [&] { return resolve(planes, settings); });
   const Picture picture = stages.time("compose", [&] { return compose(veil, opaque.gbuffer); });
-  stages.time("write", [&] {
-    writePicture(flags.output, opaque, picture.rgba, picture.touched, requestedLayers(flags.layers, veil),
+  say(stages.time("write", [&] {
+    return writePicture(flags.output, opaque, picture.rgba, picture.touched, requestedLayers(flags.layers, veil),
                  {{"pellucid:method", planes.info.method}});
-  });
+  }));
   nlohmann::json report{{"output", flags.output}};
   reportRun(flags.run, stages, {}, "CPU", report);
 }

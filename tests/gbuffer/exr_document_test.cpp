@@ -187,6 +187,21 @@ TEST(ExrDocument, MayReplaceTheFileItCameFrom) {
   expectSame(readFile(folder.path("in.exr")), expected);
 }
 
+TEST(ExrDocument, AttributesAreAddedAndReplaced) {
+  TemporaryFolder folder;
+  Part part = mixedPart(kWindows[0], exr::ZIP_COMPRESSION, 0, 1);
+  part.matrices["matrix"] = std::vector<float>(16, 1.0f);
+  writeFile(folder.path("in.exr"), {part});
+  std::map<int, ExrPartEdit> edits;
+  edits[0].attributes = {{"owner", "another"}, {"matrix", "now a text"}, {"pellucid:new", ""}};
+  writeExr(folder.path("out.exr"), readExr(folder.path("in.exr")), edits);
+  Contents expected = readFile(folder.path("in.exr"));
+  expected.attributes["0/owner"] = "string:another";
+  expected.attributes["0/matrix"] = "string:now a text";
+  expected.attributes["0/pellucid:new"] = "string:";
+  expectSame(readFile(folder.path("out.exr")), expected);
+}
+
 TEST(ExrDocument, NoticesThatItsFileWasOverwritten) {
   TemporaryFolder folder;
   writeFile(folder.path("in.exr"), {mixedPart(kWindows[0], exr::ZIP_COMPRESSION, 0, 1)});

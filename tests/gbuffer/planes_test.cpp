@@ -125,6 +125,32 @@ TEST(Planes, MergeAddsAndKeepsTheNearest) {
   EXPECT_EQ(empty.radiance[9], before.radiance[9]);
 }
 
+TEST(Planes, ScatterPlanesAreThereOnlyWhereSomethingScatters) {
+  TemporaryFolder folder;
+  OitPlanes planes = somePlanes(8);
+  writePlanes(folder.path("still.exr"), planes);
+  EXPECT_FALSE(readPlanes(folder.path("still.exr")).scatters());
+  addScatterPlanes(planes);
+  EXPECT_EQ(planes.diffuseZ[5], std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < planes.refraction.size(); ++i) {
+    planes.refraction[i] = planes.weight[i] * glm::vec4(-1.0f, 1.0f, 0.5f, 3.0f);
+    planes.diffuseZ[i] = planes.frontZ[i];
+    planes.light[i].a = planes.depth[i].r;
+  }
+  writePlanes(folder.path("scatters.exr"), planes);
+  const OitPlanes back = readPlanes(folder.path("scatters.exr"));
+  EXPECT_TRUE(sameBits(back.refraction, planes.refraction));
+  EXPECT_TRUE(sameBits(back.diffuseZ, planes.diffuseZ));
+  EXPECT_TRUE(sameBits(back.light, planes.light));
+
+  OitPlanes sum = somePlanes(8);  // lacks them
+  mergePlanes(sum, planes);
+  EXPECT_TRUE(sameBits(sum.refraction, planes.refraction));
+  mergePlanes(sum, planes);
+  EXPECT_EQ(sum.refraction[11], 2.0f * planes.refraction[11]);
+  EXPECT_EQ(sum.diffuseZ[11], planes.diffuseZ[11]);
+}
+
 TEST(Planes, MismatchesAreRefused) {
   const OitPlanes a = somePlanes(5);
   const auto refused = [&](auto change) -> std::string {
