@@ -1,6 +1,7 @@
 // Small glTF files made in the test: JSON and bytes, written as .glb or .gltf into a folder of the test's own.
 #pragma once
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdint>
 #include <cstring>
@@ -18,10 +19,20 @@ namespace pellucid::test {
 
 using Json = nlohmann::json;
 
+// One for each process, so that builds may test at the same time; gone when it ends.
+struct ProcessFolder {
+  std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / ("pellucid_scene." + std::to_string(::getpid()));
+  ~ProcessFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+};
+
 inline std::filesystem::path testFolder() {
+  static const ProcessFolder process;
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pellucid_scene" /
-                                       (std::string(info->test_suite_name()) + "." + info->name());
+  const std::filesystem::path folder = process.path / (std::string(info->test_suite_name()) + "." + info->name());
   std::filesystem::create_directories(folder);
   return folder;
 }

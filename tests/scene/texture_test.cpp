@@ -222,7 +222,8 @@ TEST(Textures, OneWrongByteIsReadOrRefused) {
     const std::vector<std::uint8_t> whole = encode(format, 8, 8, channels, OIIO::TypeDesc::UINT8, pixels);
     std::uint32_t state = 99;
     int loaded = 0, refused = 0;
-    for (std::size_t at = 8; at < whole.size(); ++at) {
+    const std::size_t step = channels == 4 ? 1 : 5;  // a JPEG is mostly tables
+    for (std::size_t at = 8; at < whole.size(); at += step) {
       std::vector<std::uint8_t> bent = whole;
       state = state * 1664525u + 1013904223u;
       bent[at] = static_cast<std::uint8_t>(state >> 24);
@@ -237,11 +238,11 @@ TEST(Textures, OneWrongByteIsReadOrRefused) {
 }
 
 TEST(Textures, AnImageThatClaimsToBeHugeIsRefusedBeforeItIsAllocated) {
-  // A PNG header of 60000 x 60000 pixels, with its checksum, and nothing behind it but the end.
-  const std::vector<std::uint8_t> bomb = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,    0, 0,    13,
-                                          'I',  'H', 'D', 'R', 0,    0,    0xea, 0x60, 0,    0, 0xea, 0x60,
-                                          8,    2,   0,   0,   0,    0x0f, 0xb0, 0xe2, 0x15, 0, 0,    0,
-                                          0,    'I', 'E', 'N', 'D',  0xae, 0x42, 0x60, 0x82};
+  // A PNG header of 60000 x 60000 pixels, with its checksum, then an empty IDAT and IEND.
+  const std::vector<std::uint8_t> bomb = {
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0xea,
+      0x60, 0x00, 0x00, 0xea, 0x60, 0x08, 0x02, 0x00, 0x00, 0x00, 0x0f, 0xb0, 0xe2, 0x15, 0x00, 0x00, 0x00, 0x00, 0x49,
+      0x44, 0x41, 0x54, 0x35, 0xaf, 0x06, 0x1e, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
   Builder builder = withImage(bomb);
   expectRefusal(refusalOf(builder), 3, {"material glass", "60000x60000", "16384"});
 }
