@@ -8,7 +8,7 @@
 namespace pellucid {
 namespace {
 
-constexpr float kReach2 = shading::PLD_GAUSSIAN_REACH * shading::PLD_GAUSSIAN_REACH;
+const float kReach2 = shading::PLD_GAUSSIAN_REACH * shading::PLD_GAUSSIAN_REACH;
 // PT17 listing 3.
 constexpr int kDiscStride = 2;
 constexpr float kDiscLargest = 16.0f;
@@ -141,9 +141,8 @@ glm::vec4 Lookups::at(int x, int y) const {
   }
   const glm::vec4 undiffused(tap.colour / tap.weight);
   if (path.variance <= 0.0f) return undiffused;
-  const Gathered spread = settings_.kernel == shading::PLD_DIFFUSE_DISC
-                              ? disc(place, path.variance, path.diffuseZ)
-                              : gaussian(place, path.variance, path.diffuseZ);
+  const Gathered spread = settings_.kernel == shading::PLD_DIFFUSE_DISC ? disc(place, path.variance, path.diffuseZ)
+                                                                        : gaussian(place, path.variance, path.diffuseZ);
   if (spread.weight <= 0.0) return undiffused;
   const glm::vec4 diffused(spread.colour / spread.weight);
   const float share = shading::kernelShare(path.variance);

@@ -1,4 +1,5 @@
-// What the layers of a pixel show of the background: refracted to another place, spread by diffusion. MODEL sections 4, 5
+// What the layers of a pixel show of the background: refracted to another place, spread by diffusion. MODEL sections 4,
+// 5
 #pragma once
 #include <glm/glm.hpp>
 #include <memory>

@@ -118,7 +118,7 @@ InferredOcclusion inferOcclusion(const FoliagePlanes& layer, const OccluderPlane
         const float open = occluders.occlusion.at(at.x, at.y);
         const float opaqueZ = occluders.viewZ.at(at.x, at.y);
         if (!std::isfinite(open) || !isDepth(opaqueZ)) continue;
-        sum += shading::occlusionTap(glm::clamp(open, 0.0f, 1.0f), opaqueZ, z, form);
+        sum += shading::occlusionTap(search, tap, glm::clamp(open, 0.0f, 1.0f), opaqueZ, z, form);
       }
       if (sum.y <= 0.0f) ++count.withoutSources;
       result.occlusion.at(x, y) = shading::occlusionFrom(sum, form);

@@ -3,7 +3,9 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "composite/denormals.h"
 
@@ -15,6 +17,9 @@ glm::vec3 through(const glm::vec3& transmission, const glm::vec3& light) {
   return {transmission.r > 0.0f ? light.r : 0.0f, transmission.g > 0.0f ? light.g : 0.0f,
           transmission.b > 0.0f ? light.b : 0.0f};
 }
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+const glm::vec4 kNoSolid(0.0f, 0.0f, 0.0f, kNothing);
 
 }  // namespace
 
@@ -43,6 +48,58 @@ Veil resolve(const OitPlanes& planes, const ResolveSettings& settings) {
   return veil;
 }
 
+void hideSolids(OitPlanes& planes) {
+  if (!planes.scatters()) return;
+  for (std::size_t i = 0; i < planes.solid.size(); ++i)
+    if (planes.refraction[i].z > 0.0f || planes.refraction[i].w > 0.0f) planes.solid[i] = kNoSolid;
+}
+
+void hideSolids(FragmentLists& lists) {
+  for (std::size_t pixel = 0; pixel < lists.solid.size(); ++pixel) {
+    glm::vec4& solid = lists.solid[pixel];
+    if (!std::isfinite(solid.a)) continue;
+    const auto first = lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[pixel]);
+    const auto last = lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
+    const bool scatters = std::any_of(first, last, [&solid](const Fragment& fragment) {
+      return fragment.z <= solid.a && (fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f));
+    });
+    if (!scatters) continue;
+    for (auto fragment = first; fragment != last; ++fragment)
+      if (fragment->z > solid.a) {
+        fragment->radiance = glm::vec3(0.0f);
+        fragment->coverage = fragment->variance = 0.0f;
+        fragment->offset = glm::vec2(0.0f);
+      }
+    solid = kNoSolid;
+  }
+}
+
+void showThrough(const Lookups& lookups, Veil& veil) {
+  veil.addScatter();
+  tbb::parallel_for(tbb::blocked_range<int>(0, veil.touched.height()), [&](const tbb::blocked_range<int>& rows) {
+    const FlushDenormals flush;
+    for (int y = rows.begin(); y != rows.end(); ++y)
+      for (int x = 0; x < veil.touched.width(); ++x) {
+        if (!veil.touched.at(x, y) || !lookups.scattersAt(x, y)) continue;
+        const glm::vec3 transmission = veil.transmission.at(x, y);
+        const glm::vec4 background = lookups.at(x, y);
+        veil.direct.at(x, y) = glm::vec3(0.0f);
+        veil.applied.at(x, y) = glm::vec4(transmission * through(transmission, glm::vec3(background)),
+                                          shading::meanOf(transmission) * (1.0f - background.a));
+      }
+  });
+}
+
+Veil resolveOver(OitPlanes planes, const ResolveSettings& settings, const LookupSettings& lookup,
+                 const GBuffer& background) {
+  if (!planes.scatters()) return resolve(planes, settings);
+  const Backdrop backdrop = backdropOf(background, planes.solid);
+  hideSolids(planes);
+  Veil veil = resolve(planes, settings);
+  showThrough(Lookups(backdrop, planes, lookup), veil);
+  return veil;
+}
+
 Picture compose(const Veil& veil, const GBuffer& background) {
   const int width = veil.touched.width(), height = veil.touched.height();
   Picture picture{background.beauty, veil.touched};
@@ -55,8 +112,14 @@ Picture compose(const Veil& veil, const GBuffer& background) {
         shading::Resolved resolved;
         resolved.transparent = veil.light.at(x, y);
         resolved.transmission = veil.transmission.at(x, y);
-        const glm::vec3 colour = shading::overBackground(resolved, through(resolved.transmission, glm::vec3(pixel)));
-        pixel = glm::vec4(colour, shading::alphaOver(resolved.transmission, pixel.a));
+        if (veil.scatters()) resolved.transmission = veil.direct.at(x, y);
+        glm::vec3 colour = shading::overBackground(resolved, through(resolved.transmission, glm::vec3(pixel)));
+        float alpha = shading::alphaOver(resolved.transmission, pixel.a);
+        if (veil.scatters()) {
+          colour += glm::vec3(veil.applied.at(x, y));
+          alpha -= veil.applied.at(x, y).a;
+        }
+        pixel = glm::vec4(colour, alpha);
       }
   });
   return picture;

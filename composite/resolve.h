@@ -2,8 +2,10 @@
 #pragma once
 #include <glm/glm.hpp>
 
+#include "composite/gather.h"
 #include "composite/veil.h"
 #include "gbuffer/accum.h"
+#include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
 
 namespace pellucid {
@@ -13,6 +15,18 @@ struct ResolveSettings {
 };
 
 Veil resolve(const OitPlanes& planes, const ResolveSettings& settings);
+
+// Where layers refract or diffuse, a solid is part of the background that they look up: it is taken out of the sums or
+// lists before they are resolved (with the fragments behind it), after backdropOf() has seen it.
+void hideSolids(OitPlanes& planes);
+void hideSolids(FragmentLists& lists);
+
+// Applies the background to the pixels of the veil that refract or diffuse; the others are left alone.
+void showThrough(const Lookups& lookups, Veil& veil);
+
+// The steps above in their order. The background is looked up where planes scatter and is otherwise not needed.
+Veil resolveOver(OitPlanes planes, const ResolveSettings& settings, const LookupSettings& lookup,
+                 const GBuffer& background);
 
 struct Picture {
   Image<glm::vec4> rgba;  // scene-linear, premultiplied; equals the background where touched is 0

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
 namespace pellucid {
 namespace {
@@ -16,6 +17,7 @@ constexpr int kTurns = 4;              // a 4x4 block of pixels turns and shifts
 constexpr int kFilter = 2;             // the filter spans five pixels: each turn of the block once
 constexpr double kMostPixels = 256;    // a radius beyond this is cut: nearer things decide
 constexpr double kSameSurface = 0.02;  // of the depth: how far neighbours of one surface may differ per pixel
+constexpr double kOwnPlane = 0.03;     // sine of the elevation up to which a tap is the surface itself
 constexpr float kFar = 1e30f;
 
 class Horizons {
@@ -38,7 +40,7 @@ class Horizons {
     return {(offset_.x + scale_.x * x) * spread, (offset_.y + scale_.y * y) * spread, -z};
   }
 
-  // Of the pixel's surface, towards the eye: from the neighbours on whichever side is nearer in depth.
+  // Of the pixel's surface, towards the eye: from the neighbours on whichever side it continues best.
   glm::dvec3 normal(int x, int y, const glm::dvec3& here) const {
     const glm::dvec3 across = slope(x, y, 1, 0, here), down = slope(x, y, 0, 1, here);
     const glm::dvec3 normal = glm::cross(down, across);
@@ -59,11 +61,12 @@ class Horizons {
     const double pixel = std::abs(scale_.x) * (orthographic_ ? 1.0 : z);
     const double reach = std::min(radius / pixel, kMostPixels);
     if (!(reach > 1.0)) return 1.0;
-    const int turn = ((x & (kTurns - 1)) * 5 + (y & (kTurns - 1)) * 4 * 3) % (kTurns * kTurns);
-    const double jitter = (((x & 3) * 4 + (y & 3)) * 7 % 16 + 0.5) / 16.0;
+    const int column = x & (kTurns - 1), row = y & (kTurns - 1), turns = kTurns * kTurns;
+    const int turn = (column * 5 + row * 12) % turns;
+    const double jitter = ((column * kTurns + row) * 7 % turns + 0.5) / turns;
     double sum = 0.0, weight = 0.0;
     for (int slice = 0; slice < kSlices; ++slice) {
-      const double angle = glm::pi<double>() * (slice + (turn + 0.5) / (kTurns * kTurns)) / kSlices;
+      const double angle = glm::pi<double>() * (slice + (turn + 0.5) / turns) / kSlices;
       const glm::dvec2 along(std::cos(angle), std::sin(angle));
       // The slice's plane holds the eye and the direction on the screen (y down there, up here).
       glm::dvec3 tangent(along.x, -along.y, 0.0);
@@ -76,34 +79,46 @@ class Horizons {
       const double length = glm::length(flat);
       if (!(length > 1e-6)) continue;
       const double lean = std::atan2(glm::dot(flat, tangent), glm::dot(flat, eye));
-      double arc = 0.0;
       for (const double way : {-1.0, 1.0}) {
         // Angles from the eye towards `way`; nothing hides more than the surface's own plane.
         const double own = 0.5 * glm::pi<double>() + way * lean;
-        const double horizon = std::min(highest(x, y, here, eye, along * way, reach, radius, jitter), own);
-        const double h = way * horizon;
-        arc += 0.25 * (-std::cos(2.0 * h - lean) + std::cos(lean) + 2.0 * h * std::sin(lean));
+        const double horizon = std::min(highest(x, y, here, eye, up, along * way, reach, radius, jitter), own);
+        sum += length * arc(way * horizon, lean);
+        weight += length * arc(way * own, lean);
       }
-      sum += length * arc;
-      weight += 1.0;
     }
     return weight > 0.0 ? std::clamp(sum / weight, 0.0, 1.0) : 1.0;
   }
 
  private:
+  // Cosine-weighted share of a half slice, up to the angle h.
+  static double arc(double h, double lean) {
+    return 0.25 * (-std::cos(2.0 * h - lean) + std::cos(lean) + 2.0 * h * std::sin(lean));
+  }
+
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < viewZ_.width() && y < viewZ_.height(); }
 
   glm::dvec3 slope(int x, int y, int dx, int dy, const glm::dvec3& here) const {
-    const bool before = hit(x - dx, y - dy), after = hit(x + dx, y + dy);
-    const glm::dvec3 back = before ? here - point(x - dx, y - dy) : glm::dvec3(0.0);
-    const glm::dvec3 ahead = after ? point(x + dx, y + dy) - here : glm::dvec3(0.0);
-    if (before && (!after || std::abs(back.z) < std::abs(ahead.z))) return back;
-    return ahead;
+    const double before = misfit(x, y, -dx, -dy), after = misfit(x, y, dx, dy);
+    if (before < after) return here - point(x - dx, y - dy);
+    return std::isfinite(after) ? point(x + dx, y + dy) - here : glm::dvec3(0.0);
+  }
+
+  // How far the pixel lies from the surface that its next two neighbours one way span; on a plane 1/z is linear in
+  // pixels. Of one neighbour alone, how far that one lies; infinite without any.
+  double misfit(int x, int y, int dx, int dy) const {
+    if (!hit(x + dx, y + dy)) return std::numeric_limits<double>::infinity();
+    const auto inverse = [&](int k) {
+      const double z = static_cast<double>(viewZ_.at(x + k * dx, y + k * dy));
+      return orthographic_ ? z : 1.0 / z;
+    };
+    const double near1 = inverse(1), near2 = hit(x + 2 * dx, y + 2 * dy) ? inverse(2) : near1;
+    return std::abs(inverse(0) - (2.0 * near1 - near2));
   }
 
   // Angle from the eye's direction to the highest thing one way, radians; pi where nothing is.
-  double highest(int x, int y, const glm::dvec3& here, const glm::dvec3& eye, const glm::dvec2& way, double reach,
-                 double radius, double jitter) const {
+  double highest(int x, int y, const glm::dvec3& here, const glm::dvec3& eye, const glm::dvec3& up,
+                 const glm::dvec2& way, double reach, double radius, double jitter) const {
     double most = -1.0;
     int lastX = x, lastY = y;
     for (int step = 0; step < kSteps; ++step) {
@@ -117,6 +132,8 @@ class Horizons {
       const glm::dvec3 path = point(atX, atY) - here;
       const double length = glm::length(path);
       if (!(length > 0.0) || length >= radius) continue;
+      // Taps fall on pixels beside the slice: what lies in the surface's own plane hides nothing.
+      if (glm::dot(path, up) <= kOwnPlane * length) continue;
       // Hides less the nearer it lies to the radius, so that nothing appears at once.
       const double fade = std::clamp(2.0 - 2.0 * length / radius, 0.0, 1.0);
       most = std::max(most, glm::mix(-1.0, glm::dot(path, eye) / length, fade));

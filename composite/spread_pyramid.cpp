@@ -15,16 +15,13 @@ namespace {
 // Texels beyond the picture whose footprint still reaches into it.
 constexpr int kMargin = 2;
 constexpr float kMask[4] = {0.125f, 0.375f, 0.375f, 0.125f};
+// A tap with this part of the kernel's variance, or more, leaves out less than 0.3% of it.
+constexpr float kTail = 0.75f;
+// How far the parts that the mask adds lie from the texel's centre, in texels.
+constexpr float kParts = 0.75f;
 // Texels in a standard deviation, at least. Measured in tests/scatter/diffusion_test.cpp.
 constexpr float kTexelsPerSpread = 2.0f;
-constexpr float kReach2 = shading::PLD_GAUSSIAN_REACH * shading::PLD_GAUSSIAN_REACH;
-
-// Part of a texel's mass that lies at or below `limit`, if its pixels have one of two values.
-float partBelow(float limit, float least, float mean, float most) {
-  if (limit >= most) return 1.0f;
-  if (limit < least) return 0.0f;
-  return std::clamp((most - mean) / (most - least), 0.0f, 1.0f);
-}
+const float kReach2 = shading::PLD_GAUSSIAN_REACH * shading::PLD_GAUSSIAN_REACH;
 
 }  // namespace
 
@@ -39,6 +36,24 @@ const SpreadPyramid::Texel& SpreadPyramid::Level::clamped(int x, int y) const {
                    std::clamp(y, -kMargin, height + kMargin - 1) + kMargin);
 }
 
+void SpreadPyramid::addTo(Property& sum, const Property& part, float share) {
+  sum.least = std::min(sum.least, part.least);
+  sum.most = std::max(sum.most, part.most);
+  sum.mass += share * part.mass;
+  sum.colour += share * part.colour;
+}
+
+SpreadPyramid::Part SpreadPyramid::above(const Texel& texel, const Property& property, float limit) {
+  if (limit < property.least) return {texel.colour, texel.mass};
+  if (limit >= property.most) return {glm::vec4(0.0f), 0.0f};
+  // With values `least` and `most` alone: sum = low + high, moment = low least + high most.
+  const float span = 1.0f / (property.most - property.least);
+  const float mass = std::clamp((property.mass - property.least * texel.mass) * span, 0.0f, texel.mass);
+  const glm::vec4 colour = (property.colour - property.least * texel.colour) * span;
+  // Rounding, and a third value, must not make more light than there is.
+  return {glm::clamp(colour, glm::min(texel.colour, 0.0f), glm::max(texel.colour, 0.0f)), mass};
+}
+
 template <class Fetch>
 SpreadPyramid::Level SpreadPyramid::halve(int width, int height, const Fetch& fetch) {
   Level level;
@@ -50,7 +65,7 @@ SpreadPyramid::Level SpreadPyramid::halve(int width, int height, const Fetch& fe
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < level.texels.width(); ++x) {
         Texel sum;
-        sum.leastVariance = sum.leastRate = std::numeric_limits<float>::max();
+        sum.variance.least = sum.rate.least = std::numeric_limits<float>::max();
         for (int j = 0; j < 4; ++j)
           for (int i = 0; i < 4; ++i) {
             const Texel part = fetch(2 * (x - kMargin) - 1 + i, 2 * (y - kMargin) - 1 + j);
@@ -58,43 +73,74 @@ SpreadPyramid::Level SpreadPyramid::halve(int width, int height, const Fetch& fe
             const float share = kMask[i] * kMask[j];
             sum.colour += share * part.colour;
             sum.mass += share * part.mass;
-            sum.meanVariance += share * part.mass * part.meanVariance;
-            sum.meanRate += share * part.mass * part.meanRate;
-            sum.leastVariance = std::min(sum.leastVariance, part.leastVariance);
-            sum.mostVariance = std::max(sum.mostVariance, part.mostVariance);
-            sum.leastRate = std::min(sum.leastRate, part.leastRate);
-            sum.mostRate = std::max(sum.mostRate, part.mostRate);
+            addTo(sum.variance, part.variance, share);
+            addTo(sum.rate, part.rate, share);
           }
-        if (sum.mass > 0.0f) {
-          sum.meanVariance /= sum.mass;
-          sum.meanRate /= sum.mass;
-        }
         level.texels.at(x, y) = sum;
       }
   });
   return level;
 }
 
-SpreadPyramid::SpreadPyramid(const Backdrop& backdrop, const OitPlanes& planes, float largestSpread) {
-  const int width = backdrop.z.width(), height = backdrop.z.height();
-  const auto pixel = [&](int x, int y) {
-    const int cx = std::clamp(x, 0, width - 1), cy = std::clamp(y, 0, height - 1);
-    Texel texel;
-    const float variance = planes.refraction.at(cx, cy).w;
-    const glm::vec4& colour = backdrop.colour.at(cx, cy);
-    if (variance <= 0.0f || !std::isfinite(colour.r + colour.g + colour.b + colour.a)) return texel;
-    texel.colour = colour;
-    texel.mass = 1.0f;
-    texel.leastVariance = texel.meanVariance = texel.mostVariance = variance;
-    texel.leastRate = texel.meanRate = texel.mostRate = 1.0f / std::max(backdrop.z.at(cx, cy), 1e-30f);
-    return texel;
-  };
-  levels_.push_back(halve(width, height, pixel));
+SpreadPyramid::Texel SpreadPyramid::pixel(int x, int y) const {
+  const int cx = std::clamp(x, 0, backdrop_.z.width() - 1), cy = std::clamp(y, 0, backdrop_.z.height() - 1);
+  Texel texel;
+  const float variance = planes_.refraction.at(cx, cy).w;
+  const glm::vec4& colour = backdrop_.colour.at(cx, cy);
+  if (variance <= 0.0f || !std::isfinite(colour.r + colour.g + colour.b + colour.a)) return texel;
+  texel.colour = colour;
+  texel.mass = 1.0f;
+  const float rate = 1.0f / std::max(backdrop_.z.at(cx, cy), 1e-30f);
+  texel.variance = {variance, variance, variance, variance * colour};
+  texel.rate = {rate, rate, rate, rate * colour};
+  return texel;
+}
+
+SpreadPyramid::Texel SpreadPyramid::texelAt(int number, int x, int y) const {
+  return number == 0 ? pixel(x, y) : levels_[static_cast<std::size_t>(number - 1)].clamped(x, y);
+}
+
+SpreadPyramid::SpreadPyramid(const Backdrop& backdrop, const OitPlanes& planes, float largestSpread)
+    : backdrop_(backdrop), planes_(planes) {
+  levels_.push_back(halve(backdrop.z.width(), backdrop.z.height(), [this](int x, int y) { return pixel(x, y); }));
   for (int k = levelFor(largestSpread); k > 1; --k) {
     const Level& last = levels_.back();
     Level next = halve(last.width, last.height, [&last](int x, int y) { return last.clamped(x, y); });
     levels_.push_back(std::move(next));
   }
+}
+
+SpreadPyramid::Part SpreadPyramid::passing(const Texel& texel, float needed, float rateLimit) {
+  Part part{texel.colour, texel.mass};
+  if (needed > texel.variance.least) part = above(texel, texel.variance, needed);
+  if (rateLimit < texel.rate.most) {
+    const Part inFront = above(texel, texel.rate, rateLimit);
+    const float kept = part.mass / texel.mass;
+    part = {kept * (texel.colour - inFront.colour), kept * (texel.mass - inFront.mass)};
+  }
+  return part;
+}
+
+SpreadPyramid::Part SpreadPyramid::passingParts(int number, int x, int y, glm::vec2 centre, float rateLimit) const {
+  const float edge = 0.5f * static_cast<float>(1 << number);
+  Part sum{glm::vec4(0.0f), 0.0f};
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) {
+      const int px = 2 * x - 1 + i, py = 2 * y - 1 + j;
+      const Texel texel = texelAt(number - 1, px, py);
+      if (texel.mass <= 0.0f) continue;
+      const float dx = (static_cast<float>(px) + 0.5f) * edge - centre.x;
+      const float dy = (static_cast<float>(py) + 0.5f) * edge - centre.y;
+      const float needed = (dx * dx + dy * dy) / kReach2;
+      // Where parts are few pixels wide, half a part is seen: they are asked down to the pixel.
+      const bool mixed = texel.variance.least < texel.variance.most && texel.variance.least < 4.0f * needed;
+      const Part part =
+          number == 2 && mixed ? passingParts(1, px, py, centre, rateLimit) : passing(texel, needed, rateLimit);
+      const float share = kMask[i] * kMask[j];
+      sum.colour += share * part.colour;
+      sum.mass += share * part.mass;
+    }
+  return sum;
 }
 
 Gathered SpreadPyramid::gather(glm::vec2 centre, float spread, float scattererZ) const {
@@ -129,15 +175,20 @@ Gathered SpreadPyramid::gather(glm::vec2 centre, float spread, float scattererZ)
       if (r2 > kReach2 * variance) continue;
       const Texel& texel = level.clamped(x, y);
       if (texel.mass <= 0.0f) continue;
-      // A pixel counts when its own variance is at least r^2 / kappa^2.
-      const float needed = r2 * (edge * edge) / kReach2;
-      float part = 1.0f;
-      if (needed > texel.leastVariance)
-        part = 1.0f - partBelow(needed, texel.leastVariance, texel.meanVariance, texel.mostVariance);
-      if (rateLimit < texel.mostRate) part *= partBelow(rateLimit, texel.leastRate, texel.meanRate, texel.mostRate);
-      const float weight = part * across[static_cast<std::size_t>(x - x0)];
-      rowColour += weight * texel.colour;
-      rowWeight += weight * texel.mass;
+      // A pixel counts when its own variance is at least r^2 / kappa^2. The texel's parts lie up to kParts away from
+      // it.
+      const float nearX = std::max(std::abs(dx) - kParts, 0.0f), nearY = std::max(std::abs(dy) - kParts, 0.0f);
+      const float farX = std::abs(dx) + kParts, farY = std::abs(dy) + kParts;
+      const float least = (nearX * nearX + nearY * nearY) * (edge * edge) / kReach2;
+      const float most = (farX * farX + farY * farY) * (edge * edge) / kReach2;
+      const float weight = across[static_cast<std::size_t>(x - x0)];
+      Part part{texel.colour, texel.mass};
+      if (least > texel.variance.most || rateLimit < texel.rate.least) continue;
+      // Where the tap's own spread ends the kernel before its tail, the end must lie at its place.
+      const bool cuts = most > texel.variance.least && texel.variance.least < kTail * spread * spread;
+      if (cuts || rateLimit < texel.rate.most) part = passingParts(number, x, y, centre, rateLimit);
+      rowColour += weight * part.colour;
+      rowWeight += weight * part.mass;
     }
     gathered.colour += glm::dvec4(rowColour) * static_cast<double>(down);
     gathered.weight += static_cast<double>(rowWeight) * static_cast<double>(down);

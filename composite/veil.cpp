@@ -12,12 +12,24 @@ Veil::Veil(int width, int height)
       frontZ(width, height, std::numeric_limits<float>::infinity()),
       touched(width, height, 0) {}
 
+void Veil::addScatter() {
+  if (scatters()) return;
+  direct = transmission;
+  applied = Image<glm::vec4>(transmission.width(), transmission.height(), glm::vec4(0.0f));
+}
+
 void VeilMean::add(const Veil& sample) {
   ++count_;
   if (count_ == 1) {
     sum_ = sample;
     return;
   }
+  if (sample.scatters()) sum_.addScatter();
+  if (sum_.scatters())
+    for (std::size_t i = 0; i < sum_.touched.size(); ++i) {
+      sum_.direct[i] += sample.scatters() ? sample.direct[i] : sample.transmission[i];
+      if (sample.scatters()) sum_.applied[i] += sample.applied[i];
+    }
   for (std::size_t i = 0; i < sum_.touched.size(); ++i) {
     sum_.light[i] += sample.light[i];
     sum_.transmission[i] += sample.transmission[i];
@@ -34,6 +46,11 @@ Veil VeilMean::finish() const {
     for (std::size_t i = 0; i < mean.touched.size(); ++i) {
       mean.light[i] *= share;
       mean.transmission[i] *= share;
+    }
+  if (count_ > 1 && mean.scatters())
+    for (std::size_t i = 0; i < mean.touched.size(); ++i) {
+      mean.direct[i] *= share;
+      mean.applied[i] *= share;
     }
   return mean;
 }

@@ -1,4 +1,5 @@
-// What transparency does to a picture before it meets one: picture = light + transmission * background.
+// What transparency does to a picture before it meets one: picture = light + transmission * background. Where layers
+// refract or diffuse, picture = light + direct * background + applied.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -13,9 +14,14 @@ struct Veil {
   Image<glm::vec3> transmission;  // of the background, [0,1] per channel; 0 behind a solid
   Image<float> frontZ;            // nearest layer or solid, planar metres, +inf for none
   Image<std::uint8_t> touched;
+  // Empty when nothing refracts or diffuses.
+  Image<glm::vec3> direct;   // part of the transmission that shows the pixel's own background
+  Image<glm::vec4> applied;  // the other part times the background it shows; a: its mean times (1 - that alpha)
 
   Veil() = default;
   Veil(int width, int height);
+  bool scatters() const { return !applied.empty(); }
+  void addScatter();  // direct = transmission, applied = 0, unless they are there
 };
 
 // The mean of equally weighted samples, added in the order they come: N jittered passes become one antialiased veil.

@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
+#include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
+#include "gbuffer/errors.h"
 #include "gbuffer/planes_io.h"
 
 namespace pellucid::cli {
@@ -15,6 +19,7 @@ struct AccumulateFlags {
   ReadFlags read;
   SceneFlags scene;
   MethodFlags method;
+  ScatterFlags scatter;
   RunFlags run;
 };
 
@@ -22,18 +27,29 @@ void accumulate(const AccumulateFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
   const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
+  if (!shot->deep.empty())
+    throw UsageError(fmt::format("{}: accumulate takes glTF only: found deep samples, which composite takes",
+                                 shot->deep[0]->path()));
   PassSettings settings;
   settings.surroundings = shot->surroundings;
   flags.scene.applyTo(settings);
   flags.method.applyTo(settings, shot->camera);
+  flags.scatter.applyTo(settings);
   GlContext context(flags.scene.device);
   TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
   const OitPlanes planes = stages.time("transparent pass", [&] { return pass.accumulate(settings); });
   stages.time("write", [&] { writePlanes(flags.output, planes); });
   const PassStatistics& statistics = pass.statistics();
   nlohmann::json report{{"output", flags.output}};
-  reportRun(flags.run, stages, {statistics.triangles, statistics.chunks, statistics.tiles, statistics.fragments},
-            context.description(), report);
+  RenderCounts counts;
+  counts.triangles = statistics.triangles;
+  counts.chunks = statistics.chunks;
+  counts.tiles = statistics.tiles;
+  counts.fragments = statistics.fragments;
+  counts.bitsPerPixel = statistics.bitsPerPixel;
+  counts.passes = statistics.passes;
+  counts.pruned = statistics.pruned;
+  reportRun(flags.run, stages, counts, context.description(), report);
 }
 
 }  // namespace
@@ -47,6 +63,7 @@ void addAccumulate(CLI::App& app) {
   flags->read.addTo(*verb);
   flags->scene.addTo(*verb);
   flags->method.addTo(*verb, false);
+  flags->scatter.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { accumulate(*flags); });
 }

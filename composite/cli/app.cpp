@@ -28,10 +28,13 @@ int run(int argc, const char* const* argv) {
   addComposite(app);
   addAccumulate(app);
   addResolve(app);
+  addOcclusion(app);
   addInspect(app);
+  addGbuffer(app);
   addCompare(app);
   addFlatten(app);
   addFragments(app);
+  addStudy(app);
   try {
     app.parse(argc, argv);
     return 0;

@@ -32,11 +32,16 @@ nlohmann::json number(double value) {
 nlohmann::json jsonOf(const CompareReport& report) {
   nlohmann::json layers = nlohmann::json::array();
   for (const LayerReport& layer : report.layers) {
-    nlohmann::json entry{{"name", layer.name},          {"channels", layer.channels},
-                         {"verdict", wordFor(layer.verdict)}, {"pixels", layer.pixels},
-                         {"failing", layer.failing},    {"warning", layer.warning},
-                         {"notFinite", layer.notFinite}, {"notFiniteInBoth", layer.notFiniteInBoth},
-                         {"mean", layer.mean},          {"rms", layer.rms},
+    nlohmann::json entry{{"name", layer.name},
+                         {"channels", layer.channels},
+                         {"verdict", wordFor(layer.verdict)},
+                         {"pixels", layer.pixels},
+                         {"failing", layer.failing},
+                         {"warning", layer.warning},
+                         {"notFinite", layer.notFinite},
+                         {"notFiniteInBoth", layer.notFiniteInBoth},
+                         {"mean", layer.mean},
+                         {"rms", layer.rms},
                          {"worst", nullptr}};
     if (layer.worst)
       entry["worst"] = {{"x", layer.worst->x},

@@ -7,9 +7,11 @@
 
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
+#include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
 #include "composite/error.h"
+#include "gbuffer/errors.h"
 
 namespace pellucid::cli {
 namespace {
@@ -23,8 +25,11 @@ struct CompositeFlags {
   ReadFlags read;
   SceneFlags scene;
   MethodFlags method;
+  ScatterFlags scatter;
+  LookupFlags lookup;
   RunFlags run;
   int samples = kDefaultSamples;
+  std::optional<double> tolerance;
   bool measure = false, selfModulation = false;
 };
 
@@ -33,30 +38,54 @@ void composite(const CompositeFlags& flags) {
   Stages stages;
   const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
   const GBuffer& gbuffer = shot->opaque.gbuffer;
+  if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
+    throw UsageError(
+        fmt::format("--tolerance: --method {} has no certificate, expected weighted", flags.method.method));
+  if (flags.tolerance && flags.method.normalisation != "spectral")
+    throw UsageError("--tolerance: --normalisation published has no certificate, expected spectral");
   RenderSettings settings;
   settings.samples = flags.samples;
   settings.sortedTruth = flags.method.isOver();
+  settings.listMethod = flags.method.listMethod();
+  settings.tolerance = flags.tolerance;
   settings.resolve.selfModulation = flags.selfModulation;
   settings.pass.surroundings = shot->surroundings;
   flags.scene.applyTo(settings.pass);
   flags.method.applyTo(settings.pass, shot->camera);
+  flags.scatter.applyTo(settings.pass);
+  settings.lookup = flags.lookup.settings();
 
-  auto context = stages.time("GL context", [&] { return std::make_unique<GlContext>(flags.scene.device); });
-  auto pass = stages.time(
-      "upload", [&] { return std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera); });
+  std::unique_ptr<GlContext> context;
+  std::unique_ptr<TransparentPass> pass;
+  if (shot->hasScene) {
+    stages.time("GL context", [&] { context = std::make_unique<GlContext>(flags.scene.device); });
+    stages.time("upload",
+                [&] { pass = std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera); });
+  }
+  if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
   RenderCounts counts;
-  const Veil veil = renderVeil(*pass, settings, gbuffer, stages, counts);
+  const Veil veil = renderVeil(pass.get(), shot->deep, settings, gbuffer, stages, counts);
   const Picture picture = stages.time("compose", [&] { return compose(veil, gbuffer); });
 
   nlohmann::json report;
+  if (flags.tolerance) {
+    report["tolerance"] = {{"E", *flags.tolerance},
+                           {"certified", counts.tolerance.certified},
+                           {"recomputed", counts.tolerance.recomputed}};
+    if (!flags.run.json)
+      fmt::print("tolerance {}: {} pixels certified, {} recomputed exactly\n", *flags.tolerance,
+                 counts.tolerance.certified, counts.tolerance.recomputed);
+  }
   report["output"] = flags.output;
   report["method"] = flags.method.method;
   if (flags.measure) {
     RenderSettings truth = settings;
     truth.sortedTruth = true;
+    truth.listMethod.reset();
+    truth.tolerance.reset();
     RenderCounts truthCounts;
     Stages truthStages;
-    const Veil truthVeil = renderVeil(*pass, truth, gbuffer, truthStages, truthCounts);
+    const Veil truthVeil = renderVeil(pass.get(), shot->deep, truth, gbuffer, truthStages, truthCounts);
     const ErrorStatistics error = measureError(picture.rgba, compose(truthVeil, gbuffer).rgba);
     for (const auto& [name, seconds] : truthStages.seconds()) stages.add("truth: " + name, seconds);
     report["error"] = {{"mean", error.mean},
@@ -68,11 +97,20 @@ void composite(const CompositeFlags& flags) {
                        {"notFinite", error.nonFinite}};
     if (!flags.run.json) fmt::print("error of {} against sorted over: {}\n", flags.method.method, errorLine(error));
   }
+  std::vector<ExtraLayer> layers = requestedLayers(flags.layers, veil);
+  if (wantsDebugLayers(flags.layers)) {
+    if (!pass)
+      throw UsageError("--layers: D, delta, weight and count show the transparent pass: found deep files alone");
+    const OitPlanes planes = stages.time("debug planes", [&] { return pass->accumulate(settings.pass); });
+    for (ExtraLayer& layer : debugLayers(flags.layers, planes)) layers.push_back(std::move(layer));
+  }
   say(stages.time("write", [&] {
-    return writePicture(flags.output, shot->opaque, picture.rgba, picture.touched, requestedLayers(flags.layers, veil),
-                 {{"pellucid:method", flags.method.method}});
+    return writePicture(
+        flags.output, shot->opaque, picture.rgba, picture.touched, layers,
+        {{"pellucid:method", flags.method.method}, {"pellucid:weight", weightText(settings.pass.weight)}});
   }));
-  reportRun(flags.run, stages, counts, context->description(), report);
+  for (const auto& source : shot->deep) say(source->notes());
+  reportRun(flags.run, stages, counts, context ? context->description() : "CPU", report);
 }
 
 }  // namespace
@@ -81,16 +119,21 @@ void addComposite(CLI::App& app) {
   auto flags = std::make_shared<CompositeFlags>();
   CLI::App* verb = app.add_subcommand("composite", "Composite transparent geometry onto an opaque render");
   verb->add_option("opaque", flags->opaque, "EXR with beauty and depth")->required();
-  verb->add_option("scenes", flags->scenes, "glTF or GLB with the transparent things")->required();
+  verb->add_option("scenes", flags->scenes, "glTF, GLB or deep EXR with the transparent things")->required();
   verb->add_option("-o,--output", flags->output, "EXR to write")->required();
   flags->read.addTo(*verb);
   flags->scene.addTo(*verb);
   flags->method.addTo(*verb, true);
+  flags->scatter.addTo(*verb);
+  flags->lookup.addTo(*verb);
   flags->run.addTo(*verb);
   verb->add_option("--aa", flags->samples, "Jittered passes, averaged; 1 samples pixel centres")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   verb->add_flag("--measure", flags->measure, "Also composite the sorted truth and print the error against it");
+  verb->add_option("--tolerance", flags->tolerance,
+                   "Error to live with, guaranteed for every pixel and channel: E times the larger of 1 and the value")
+      ->check(CLI::NonNegativeNumber);
   verb->add_flag("--self-modulation", flags->selfModulation, "PT17 eq. 14, a heuristic for --normalisation published");
   addLayersOption(*verb, flags->layers);
   verb->callback([flags] { composite(*flags); });

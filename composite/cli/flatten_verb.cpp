@@ -28,7 +28,8 @@ ExtraLayer layersOf(const FlatPicture& flat) {
   for (int c = 0; c < 3; ++c) {
     layer.channels.emplace_back(colours[c], plane([&](std::size_t i) { return flat.light[i][c]; }));
     if (flat.colouredOpacity)
-      layer.channels.emplace_back(std::string("A") + colours[c], plane([&](std::size_t i) { return flat.opacity[i][c]; }));
+      layer.channels.emplace_back(std::string("A") + colours[c],
+                                  plane([&](std::size_t i) { return flat.opacity[i][c]; }));
   }
   layer.channels.emplace_back("A", plane([&](std::size_t i) { return flat.opacity[i].w; }));
   layer.channels.emplace_back("Z", plane([&](std::size_t i) { return flat.frontZ[i]; }));
@@ -41,8 +42,7 @@ void flattenVerb(const FlattenFlags& flags) {
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
   const std::uint64_t most = parseBytes(flags.budget, "--budget") / 32;
   const FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most); });
-  if (flat.oddities.notFinite)
-    spdlog::info("{} deep samples are not finite and were skipped", flat.oddities.notFinite);
+  if (flat.oddities.notFinite) spdlog::info("{} deep samples are not finite and were skipped", flat.oddities.notFinite);
   if (flat.oddities.outOfRange)
     spdlog::info("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
   stages.time("write", [&] { writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}); });

@@ -71,9 +71,9 @@ class RowGatherer {
       for (const FragmentLists* lists : across)
         for (int x = lists->window.x0; x < lists->window.x1; ++x) {
           const glm::vec4 solid = lists->solid.at(x - lists->window.x0, y - lists->window.y0);
-          const auto pixel = static_cast<std::size_t>(y - lists->window.y0) *
-                                 static_cast<std::size_t>(lists->window.width()) +
-                             static_cast<std::size_t>(x - lists->window.x0);
+          const auto pixel =
+              static_cast<std::size_t>(y - lists->window.y0) * static_cast<std::size_t>(lists->window.width()) +
+              static_cast<std::size_t>(x - lists->window.x0);
           sorted.clear();
           for (std::uint64_t i = lists->offsets[pixel]; i < lists->offsets[pixel + 1]; ++i) {
             const Fragment& fragment = lists->fragments[i];

@@ -8,8 +8,8 @@ namespace {
 FragmentLists emptyLists(const Window& window) {
   FragmentLists lists;
   lists.window = window;
-  lists.solid = Image<glm::vec4>(window.width(), window.height(),
-                                 glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity()));
+  lists.solid =
+      Image<glm::vec4>(window.width(), window.height(), glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity()));
   lists.offsets.assign(lists.solid.size() + 1, 0);
   return lists;
 }

@@ -142,15 +142,38 @@ void SceneFlags::applyTo(PassSettings& settings) const {
 }
 
 void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
-  std::vector<std::string> methods{"phenomenological"};
-  if (listsToo) methods.push_back("over");
-  verb.add_option("--method", method)->check(CLI::IsMember(methods))->capture_default_str();
-  verb.add_option("--precision", precision)->check(CLI::IsMember({"float"}))->capture_default_str();
-  verb.add_option("--normalisation", normalisation)
-      ->check(CLI::IsMember({"spectral", "published"}))
+  const std::string names = listsToo ? "phenomenological, over, " + methodNames() : "phenomenological";
+  verb.add_option("--method", method, names)
+      ->check([listsToo, names](const std::string& text) -> std::string {
+        if (text == "phenomenological" || (listsToo && (text == "over" || chooseMethod(text)))) return "";
+        return fmt::format("--method: found '{}', expected {}", text, names);
+      })
       ->capture_default_str();
-  verb.add_option("--weight", weight, "eq5, eq7..eq10, eq7z..eq10z, power:K or uniform")->capture_default_str();
+  verb.add_option("--precision", precision)->check(CLI::IsMember({"float"}))->capture_default_str();
+  addWeightTo(verb, listsToo);
+}
+
+void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
+  autoAllowed = takesAuto;
+  normalisationOption = verb.add_option("--normalisation", normalisation)
+                            ->check(CLI::IsMember({"spectral", "published"}))
+                            ->capture_default_str();
+  weightOption =
+      verb.add_option(
+              "--weight", weight,
+              takesAuto ? "eq5, eq7..eq10, eq7z..eq10z, power:K, uniform, or auto: fitted to the truth on probe pixels"
+                        : "eq5, eq7..eq10, eq7z..eq10z, power:K or uniform")
+          ->capture_default_str();
   verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for eq5 and eq10");
+}
+
+std::optional<ChosenMethod> MethodFlags::listMethod() const {
+  const std::optional<ChosenMethod> chosen = chooseMethod(method);
+  if (!chosen || chosen->method->weighs) return chosen;
+  for (const CLI::Option* option : {weightOption, normalisationOption})
+    if (option && option->count() > 0)
+      throw UsageError(fmt::format("{}: --method {} does not weigh its layers", option->get_name(), method));
+  return chosen;
 }
 
 void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
@@ -166,6 +189,11 @@ void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
     if (settings.weight.exponent < 0.0f)
       throw UsageError(
           fmt::format("--weight: found '{}', expected K >= 0: farther layers must not weigh more", weight));
+  }
+  if (isAuto()) {
+    if (!autoAllowed)
+      throw UsageError("--weight: found 'auto', expected a weight: this verb has no truth to fit it to");
+    settings.weight.kind = shading::PLD_WEIGHT_EQ5;  // until the fit
   }
   if (settings.weight.kind < 0)
     throw UsageError(fmt::format(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "composite/methods/method.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "engine_bridge/scene/gltf.h"
 #include "gbuffer/opaque_io.h"
@@ -33,8 +34,14 @@ struct SceneFlags {
 
 struct MethodFlags {
   std::string method = "phenomenological", precision = "float", normalisation = "spectral", weight = "eq5", weightRange;
+  bool autoAllowed = false;
   void addTo(CLI::App& verb, bool listsToo);
+  void addWeightTo(CLI::App& verb, bool takesAuto);  // --normalisation, --weight, --weight-range alone
+  bool isAuto() const { return weight == "auto"; }   // then the weight is to be fitted, see fitShotWeight
   bool isOver() const { return method == "over"; }
+  // A method of the table that works from fragment lists. Throws UsageError for a flag that it cannot honour.
+  std::optional<ChosenMethod> listMethod() const;
+  const CLI::Option *weightOption = nullptr, *normalisationOption = nullptr;
   // The range comes from the flag, else from the camera, else 0.1:1000. Throws UsageError.
   void applyTo(PassSettings& settings, const Camera& camera) const;
 };

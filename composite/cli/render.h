@@ -2,22 +2,36 @@
 #pragma once
 #include "composite/cli/messages.h"
 #include "composite/cli/shot.h"
+#include "composite/methods/method.h"
 #include "composite/resolve.h"
+#include "composite/tolerance.h"
 
 namespace pellucid::cli {
 
 struct RenderSettings {
   PassSettings pass;
   ResolveSettings resolve;
-  bool sortedTruth = false;  // `over`
-  int samples = 1;           // --aa
+  LookupSettings lookup;
+  bool sortedTruth = false;                // `over`
+  int samples = 1;                         // --aa
+  std::optional<ChosenMethod> listMethod;  // a method that works from fragment lists; nothing: the GL pass's sums
+  std::optional<double> tolerance;         // certify the sums, composite exactly what they cannot
 };
 
 struct RenderCounts {
   std::size_t triangles = 0, chunks = 0, tiles = 0, fragments = 0;
+  ToleranceCounts tolerance = {};
+  int bitsPerPixel = 0, passes = 0;
+  std::vector<std::string> pruned = {};
 };
 
-Veil renderVeil(TransparentPass& pass, const RenderSettings& settings, const GBuffer& gbuffer, Stages& stages,
-                RenderCounts& counts);
+//   pass  null when the shot has no geometry
+//   deep  the shot's deep files, whose samples join the pass's fragments
+Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,
+                const GBuffer& gbuffer, Stages& stages, RenderCounts& counts);
+
+// Fits the weight to the sorted truth on probe pixels at their centres, and says what was chosen. --weight auto
+void fitShotWeight(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const GBuffer& gbuffer,
+                   PassSettings& settings, Stages& stages);
 
 }  // namespace pellucid::cli

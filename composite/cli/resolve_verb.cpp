@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/results.h"
+#include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
 #include "composite/resolve.h"
@@ -17,6 +18,7 @@ struct ResolveFlags {
   std::vector<std::string> planes, layers;
   ReadFlags read;
   RunFlags run;
+  LookupFlags lookup;
   bool selfModulation = false;
 };
 
@@ -37,11 +39,15 @@ void resolveVerb(const ResolveFlags& flags) {
                                    windowText(planes.data), windowText(opaque.gbuffer.data), flags.opaque));
   ResolveSettings settings;
   settings.selfModulation = flags.selfModulation;
-  const Veil veil = stages.time("resolve", [&] { return resolve(planes, settings); });
+  const LookupSettings lookup = flags.lookup.settings();
+  const Veil veil = stages.time("resolve", [&] { return resolveOver(planes, settings, lookup, opaque.gbuffer); });
   const Picture picture = stages.time("compose", [&] { return compose(veil, opaque.gbuffer); });
+  std::vector<ExtraLayer> layers = requestedLayers(flags.layers, veil);
+  if (wantsDebugLayers(flags.layers))
+    for (ExtraLayer& layer : debugLayers(flags.layers, planes)) layers.push_back(std::move(layer));
   say(stages.time("write", [&] {
-    return writePicture(flags.output, opaque, picture.rgba, picture.touched, requestedLayers(flags.layers, veil),
-                 {{"pellucid:method", planes.info.method}});
+    return writePicture(flags.output, opaque, picture.rgba, picture.touched, layers,
+                        {{"pellucid:method", planes.info.method}});
   }));
   nlohmann::json report{{"output", flags.output}};
   reportRun(flags.run, stages, {}, "CPU", report);
@@ -57,6 +63,7 @@ void addResolve(CLI::App& app) {
   verb->add_option("-o,--output", flags->output, "EXR to write")->required();
   flags->read.addTo(*verb);
   flags->run.addTo(*verb);
+  flags->lookup.addTo(*verb);
   verb->add_flag("--self-modulation", flags->selfModulation, "PT17 eq. 14, a heuristic for --normalisation published");
   addLayersOption(*verb, flags->layers);
   verb->callback([flags] { resolveVerb(*flags); });

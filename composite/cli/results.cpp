@@ -27,9 +27,10 @@ Threads::Threads(int count) : impl_(std::make_unique<Impl>()) {
 Threads::~Threads() = default;
 
 void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
-  verb.add_option("--layers", layers, "Layers to add: transparent, transmission, depth")
+  verb.add_option("--layers", layers,
+                  "Layers to add: transparent, transmission, depth; for debugging D, delta, weight, count")
       ->delimiter(',')
-      ->check(CLI::IsMember({"transparent", "transmission", "depth"}));
+      ->check(CLI::IsMember({"transparent", "transmission", "depth", "D", "delta", "weight", "count"}));
 }
 
 std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, const Veil& veil) {
@@ -52,10 +53,10 @@ std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, 
     } else if (name == "transmission") {
       for (int c = 0; c < 3; ++c)
         layer.channels.emplace_back(names[c], plane([&](std::size_t i) { return veil.transmission[i][c]; }));
-    } else {
+    } else if (name == "depth") {
       layer.channels.emplace_back("Z", plane([&](std::size_t i) { return veil.frontZ[i]; }));
     }
-    result.push_back(std::move(layer));
+    if (!layer.channels.empty()) result.push_back(std::move(layer));
   }
   return result;
 }
@@ -67,9 +68,15 @@ void reportRun(const RunFlags& flags, const Stages& stages, const RenderCounts& 
     for (const auto& [name, value] : stages.seconds()) seconds[name] = value;
     report["statistics"] = {{"device", device},      {"triangles", counts.triangles}, {"chunks", counts.chunks},
                             {"tiles", counts.tiles}, {"fragments", counts.fragments}, {"seconds", seconds}};
+    report["statistics"]["bitsPerPixel"] = counts.bitsPerPixel;
+    report["statistics"]["passes"] = counts.passes;
+    report["statistics"]["pruned"] = counts.pruned;
     if (!flags.json) {
       fmt::print("device      {}\ntriangles   {}\nchunks      {}\ntiles       {}\nfragments   {}\n", device,
                  counts.triangles, counts.chunks, counts.tiles, counts.fragments);
+      if (counts.passes)
+        fmt::print("planes      {} bits per pixel\npasses      {}\n", counts.bitsPerPixel, counts.passes);
+      for (const std::string& reason : counts.pruned) fmt::print("pruned      {}\n", reason);
       for (const auto& [name, value] : stages.seconds()) fmt::print("{:<24}{:8.1f} ms\n", name, 1e3 * value);
     }
   }

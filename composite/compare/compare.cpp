@@ -169,8 +169,8 @@ CompareReport compareExr(const ExrDocument& a, const ExrDocument& b, const Compa
     if (std::find(order.begin(), order.end(), pair.layer) == order.end()) order.push_back(pair.layer);
   for (const std::string& wanted : settings.layers)
     if (std::find(order.begin(), order.end(), wanted) == order.end())
-      throw UsageError(fmt::format("--layer: found '{}', expected one that both files have ({})", wanted,
-                                   fmt::join(order, ", ")));
+      throw UsageError(
+          fmt::format("--layer: found '{}', expected one that both files have ({})", wanted, fmt::join(order, ", ")));
   for (const std::string& layer : order) {
     if (!settings.layers.empty() &&
         std::find(settings.layers.begin(), settings.layers.end(), layer) == settings.layers.end())
@@ -210,9 +210,9 @@ std::string reportText(const CompareReport& report, const std::string& a, const 
                         layer.name.empty() ? "(no name)" : layer.name, wordFor(layer.verdict), layer.mean, layer.rms,
                         layer.failing, layer.pixels, percent);
     if (layer.worst)
-      text += fmt::format(", worst at ({}, {}) {}: {:.9g} against {:.9g}, off by {:.3g}", layer.worst->x,
-                          layer.worst->y, layer.worst->channel, layer.worst->a, layer.worst->b,
-                          layer.worst->difference);
+      text +=
+          fmt::format(", worst at ({}, {}) {}: {:.9g} against {:.9g}, off by {:.3g}", layer.worst->x, layer.worst->y,
+                      layer.worst->channel, layer.worst->a, layer.worst->b, layer.worst->difference);
     if (layer.notFinite) text += fmt::format(", {} values finite in one file only", layer.notFinite);
     if (layer.notFiniteInBoth) text += fmt::format(", {} values not finite in both", layer.notFiniteInBoth);
     text += "\n";

@@ -45,10 +45,10 @@ struct LayerReport {
   std::string name;  // "" for channels without a layer; with its part where there are several
   std::vector<std::string> channels;
   std::size_t pixels = 0, failing = 0, warning = 0;
-  std::size_t notFinite = 0;         // values where one file holds NaN or infinity and the other something else
-  std::size_t notFiniteInBoth = 0;   // values where both hold the same of them
-  double mean = 0, rms = 0;          // of |a - b| over values
-  std::optional<WorstValue> worst;   // nothing when all values are equal
+  std::size_t notFinite = 0;        // values where one file holds NaN or infinity and the other something else
+  std::size_t notFiniteInBoth = 0;  // values where both hold the same of them
+  double mean = 0, rms = 0;         // of |a - b| over values
+  std::optional<WorstValue> worst;  // nothing when all values are equal
   Verdict verdict = Verdict::same;
 };
 

@@ -159,13 +159,14 @@ Page comparePage(const ExrDocument& a, const ExrDocument& b, const CompareReport
   for (const std::string& sentence : report.metadata) page.lines.push_back("Metadata: " + sentence + ".");
   PageTable table{"Layers", {"layer", "verdict", "mean", "rms", "pixels over", "of", "worst", "at"}, {}};
   for (const LayerReport& layer : report.layers)
-    table.rows.push_back({layer.name.empty() ? "(no name)" : layer.name,
-                          layer.verdict == Verdict::failed ? "FAIL" : layer.verdict == Verdict::warned ? "warn" : "same",
-                          fmt::format("{:.4g}", layer.mean), fmt::format("{:.4g}", layer.rms),
-                          fmt::format("{}", layer.failing), fmt::format("{}", layer.pixels),
-                          layer.worst ? fmt::format("{:.4g}", layer.worst->difference) : "0",
-                          layer.worst ? fmt::format("{} ({}, {})", layer.worst->channel, layer.worst->x, layer.worst->y)
-                                      : ""});
+    table.rows.push_back(
+        {layer.name.empty() ? "(no name)" : layer.name,
+         layer.verdict == Verdict::failed   ? "FAIL"
+         : layer.verdict == Verdict::warned ? "warn"
+                                            : "same",
+         fmt::format("{:.4g}", layer.mean), fmt::format("{:.4g}", layer.rms), fmt::format("{}", layer.failing),
+         fmt::format("{}", layer.pixels), layer.worst ? fmt::format("{:.4g}", layer.worst->difference) : "0",
+         layer.worst ? fmt::format("{} ({}, {})", layer.worst->channel, layer.worst->x, layer.worst->y) : ""});
   page.tables.push_back(std::move(table));
   for (const LayerReport& layer : report.layers)
     for (const ExrDocument* document : {&a, &b})
@@ -173,7 +174,7 @@ Page comparePage(const ExrDocument& a, const ExrDocument& b, const CompareReport
         if (part.deep) continue;
         const bool named = document->parts.size() > 1 && !part.name.empty();
         if (named && layer.name.rfind(part.name, 0) != 0) continue;
-        const std::string inner = !named                          ? layer.name
+        const std::string inner = !named                                 ? layer.name
                                   : layer.name.size() > part.name.size() ? layer.name.substr(part.name.size() + 1)
                                                                          : "";
         const std::vector<const ExrChannel*> shown = shownChannels(part, inner);

@@ -9,8 +9,8 @@ namespace pellucid {
 namespace {
 
 // Follow from pixels and layout, which are compared for themselves.
-const std::set<std::string> kCompared{"channels", "dataWindow", "displayWindow", "chunkCount", "maxSamplesPerPixel",
-                                      "name",     "type",       "version"};
+const std::set<std::string> kCompared{"channels",           "dataWindow", "displayWindow", "chunkCount",
+                                      "maxSamplesPerPixel", "name",       "type",          "version"};
 const std::set<std::string> kClock{"capDate", "utcOffset", "DateTime", "Date", "RenderTime"};
 
 std::string prefixOf(const ExrDocument& document, const ExrPart& part) {
@@ -85,8 +85,7 @@ std::vector<ChannelPair> pairChannels(const ExrDocument& a, const ExrDocument& b
             fmt::format("channel {} is only in the second file", prefixOf(b, *partB) + channel.name));
   }
   for (const ExrPart& part : b.parts)
-    if (!met.contains(&part))
-      report.structure.push_back(fmt::format("{} is only in the second file", partName(part)));
+    if (!met.contains(&part)) report.structure.push_back(fmt::format("{} is only in the second file", partName(part)));
   return pairs;
 }
 

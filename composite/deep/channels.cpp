@@ -54,8 +54,8 @@ DeepChannels resolveDeep(const std::string& path) {
   channels.part = static_cast<int>(part - document.parts.begin());
   Finder find(*part, channels);
   if (!find.has({"Z", "R", "G", "B"}))
-    throw MeaningError(fmt::format("{}: found deep channels {}, expected Z, R, G, B and an opacity", path,
-                                   namesOf(*part)));
+    throw MeaningError(
+        fmt::format("{}: found deep channels {}, expected Z, R, G, B and an opacity", path, namesOf(*part)));
   channels.z = find.optional("Z");
   channels.zBack = find.optional("ZBack");
   channels.light = {find.optional("R"), find.optional("G"), find.optional("B")};
@@ -69,8 +69,8 @@ DeepChannels resolveDeep(const std::string& path) {
     channels.opacity = {channels.alpha, channels.alpha, channels.alpha};
     channels.colouredOpacity = false;
   } else {
-    throw MeaningError(fmt::format("{}: found deep channels {}, expected A, or AR, AG, AB, or RA, GA, BA", path,
-                                   namesOf(*part)));
+    throw MeaningError(
+        fmt::format("{}: found deep channels {}, expected A, or AR, AG, AB, or RA, GA, BA", path, namesOf(*part)));
   }
   if (find.has({"oit.coverage", "oit.t.R", "oit.t.G", "oit.t.B", "oit.delta.X", "oit.delta.Y", "oit.D2"})) {
     channels.coverage = find.optional("oit.coverage");
@@ -118,19 +118,30 @@ Fragment fragmentAt(const DeepSample& sample, double z) {
 }
 
 const std::vector<std::string>& recordChannels() {
-  static const std::vector<std::string> names{"R",           "G",           "B",           "A",       "AR",
-                                              "AG",          "AB",          "Z",           "ZBack",   "oit.coverage",
-                                              "oit.t.R",     "oit.t.G",     "oit.t.B",     "oit.delta.X",
-                                              "oit.delta.Y", "oit.D2"};
+  static const std::vector<std::string> names{
+      "R",       "G",       "B",       "A",           "AR",          "AG",    "AB", "Z", "ZBack", "oit.coverage",
+      "oit.t.R", "oit.t.G", "oit.t.B", "oit.delta.X", "oit.delta.Y", "oit.D2"};
   return names;
 }
 
 std::array<float, 16> recordValues(const Fragment& fragment) {
   const glm::vec3 opacity = shading::opacityOf(fragment.coverage, fragment.transmission);
-  return {fragment.radiance.r, fragment.radiance.g,     fragment.radiance.b,     shading::meanOf(opacity),
-          opacity.r,           opacity.g,               opacity.b,               fragment.z,
-          fragment.z,          fragment.coverage,       fragment.transmission.r, fragment.transmission.g,
-          fragment.transmission.b, fragment.offset.x,   fragment.offset.y,       fragment.variance};
+  return {fragment.radiance.r,
+          fragment.radiance.g,
+          fragment.radiance.b,
+          shading::meanOf(opacity),
+          opacity.r,
+          opacity.g,
+          opacity.b,
+          fragment.z,
+          fragment.z,
+          fragment.coverage,
+          fragment.transmission.r,
+          fragment.transmission.g,
+          fragment.transmission.b,
+          fragment.offset.x,
+          fragment.offset.y,
+          fragment.variance};
 }
 
 Fragment recordAt(const DeepChannels& channels, const DeepRows& rows, std::uint64_t i, double metresPerUnit) {

@@ -29,8 +29,8 @@ DeepChannels resolveDeep(const std::string& path);
 
 // What was wrong with samples and how they were read, for a note.
 struct DeepOddities {
-  std::size_t notFinite = 0;    // skipped
-  std::size_t outOfRange = 0;   // opacity outside [0,1], clamped
+  std::size_t notFinite = 0;   // skipped
+  std::size_t outOfRange = 0;  // opacity outside [0,1], clamped
   void add(const DeepOddities& other) {
     notFinite += other.notFinite;
     outOfRange += other.outOfRange;

@@ -72,7 +72,8 @@ class PointPixel {
       }
       const double alpha = alpha_ ? static_cast<double>(alpha_[i])
                                   : (static_cast<double>(opacity_[0][i]) + static_cast<double>(opacity_[1][i]) +
-                                     static_cast<double>(opacity_[2][i])) / 3.0;
+                                     static_cast<double>(opacity_[2][i])) /
+                                        3.0;
       if (!inRange || !(alpha >= 0.0 && alpha <= 1.0) || !std::isfinite(sum)) return false;
       left[3] *= 1.0 - alpha;
     }
@@ -85,13 +86,26 @@ class PointPixel {
  private:
   static constexpr std::size_t kShort = 128;  // beyond, insertion costs more than the general sort
   static const float* column(const DeepRows& rows, int index) {
-    return rows.channels[static_cast<std::size_t>(index)].data();
+    return rows.channels.empty() ? nullptr : rows.channels[static_cast<std::size_t>(index)].data();
   }
   int zBack_;
   const float *z_ = nullptr, *back_ = nullptr, *alpha_ = nullptr;
   const float *light_[3] = {}, *opacity_[3] = {};
   std::vector<Place> places_;
 };
+
+// Range of the pixel's samples, empty outside the rows.
+std::pair<std::uint64_t, std::uint64_t> samplesAt(const DeepRows& rows, int x, int y) {
+  const Window& w = rows.window;
+  if (x < w.x0 || x >= w.x1 || y < w.y0 || y >= w.y1) return {0, 0};
+  const auto pixel =
+      static_cast<std::size_t>(y - w.y0) * static_cast<std::size_t>(w.width()) + static_cast<std::size_t>(x - w.x0);
+  return {rows.offsets[pixel], rows.offsets[pixel + 1]};
+}
+
+std::uint64_t samplesIn(const DeepRows& rows, int y) {
+  return samplesAt(rows, rows.window.x1 - 1, y).second - samplesAt(rows, rows.window.x0, y).first;
+}
 
 void flattenRows(std::vector<Source>& sources, const Window& band, FlatPicture& flat, std::mutex& mutex) {
   tbb::parallel_for(tbb::blocked_range<int>(band.y0, band.y1), [&](const tbb::blocked_range<int>& range) {
@@ -101,16 +115,13 @@ void flattenRows(std::vector<Source>& sources, const Window& band, FlatPicture& 
     for (int y = range.begin(); y != range.end(); ++y)
       for (int x = band.x0; x < band.x1; ++x) {
         const int px = x - flat.data.x0, py = y - flat.data.y0;
-        const auto pixel = static_cast<std::size_t>(y - band.y0) * static_cast<std::size_t>(band.width()) +
-                           static_cast<std::size_t>(x - band.x0);
         DeepFlat result;
         float frontZ = std::numeric_limits<float>::infinity();
-        const DeepRows& first = sources[0].rows;
-        if (sources.size() > 1 ||
-            !points.composite(first.offsets[pixel], first.offsets[pixel + 1], result, frontZ)) {
+        const auto [first, last] = samplesAt(sources[0].rows, x, y);
+        if (sources.size() > 1 || !points.composite(first, last, result, frontZ)) {
           samples.clear();
           for (const Source& source : sources)
-            for (std::uint64_t i = source.rows.offsets[pixel]; i < source.rows.offsets[pixel + 1]; ++i) {
+            for (auto [i, end] = samplesAt(source.rows, x, y); i < end; ++i) {
               DeepSample sample;
               if (sampleAt(source.channels, source.rows, i, 1.0, sample, oddities)) samples.push_back(sample);
             }
@@ -135,12 +146,15 @@ FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t mos
     sources[i].channels = resolveDeep(paths[i]);
     sources[i].reader = std::make_unique<DeepReader>(paths[i], sources[i].channels.part, sources[i].channels.names);
     flat.colouredOpacity |= sources[i].channels.colouredOpacity;
-    if (i > 0 && (sources[i].reader->data() != sources[0].reader->data() ||
-                  sources[i].reader->display() != sources[0].reader->display()))
-      throw MeaningError(fmt::format("{}: found other windows than those of {}, expected the same", paths[i], paths[0]));
+    const Window& data = sources[i].reader->data();
+    if (i == 0) flat.data = data;
+    flat.data = {std::min(flat.data.x0, data.x0), std::min(flat.data.y0, data.y0), std::max(flat.data.x1, data.x1),
+                 std::max(flat.data.y1, data.y1)};
+    if (sources[i].reader->display() != sources[0].reader->display())
+      throw MeaningError(
+          fmt::format("{}: found another display window than that of {}, expected the same", paths[i], paths[0]));
   }
   flat.display = sources[0].reader->display();
-  flat.data = sources[0].reader->data();
   const int width = flat.data.width(), height = flat.data.height();
   flat.light = Image<glm::vec3>(width, height);
   flat.opacity = Image<glm::vec4>(width, height);
@@ -148,11 +162,18 @@ FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t mos
   std::mutex mutex;
   for (int y = flat.data.y0; y < flat.data.y1;) {
     int end = flat.data.y1;
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-      sources[i].rows = sources[i].reader->read(y, end, i == 0 ? most : UINT64_MAX);
-      end = sources[i].rows.window.y1;
-      flat.samples += sources[i].rows.offsets.back();
+    for (Source& source : sources) {
+      const Window& data = source.reader->data();
+      const int from = std::max(y, data.y0), to = std::min(end, data.y1);
+      source.rows = {};
+      if (from < to) {
+        source.rows = source.reader->read(from, to, most);
+        end = source.rows.window.y1;
+      }
     }
+    for (const Source& source : sources)
+      for (int row = std::max(y, source.rows.window.y0); row < std::min(end, source.rows.window.y1); ++row)
+        flat.samples += samplesIn(source.rows, row);
     flattenRows(sources, {flat.data.x0, y, flat.data.x1, end}, flat, mutex);
     y = end;
   }

@@ -1,5 +1,5 @@
-// A deep file to a flat picture, exactly: any order, overlapping volumes, coincident samples, coloured opacity. Streamed
-// by bands of scanlines, so that memory does not follow the file's size.
+// A deep file to a flat picture, exactly: any order, overlapping volumes, coincident samples, coloured opacity.
+// Streamed by bands of scanlines, so that memory does not follow the file's size.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -21,9 +21,9 @@ struct FlatPicture {
   DeepOddities oddities;
 };
 
-// Merges the files' samples (same windows) and composites them front to back.
+// Merges the files' samples over the union of their data windows and composites them front to back.
 //   most  deep samples held at once, beyond one row's
-// Throws what resolveDeep and DeepReader throw, MeaningError for windows that differ.
+// Throws what resolveDeep and DeepReader throw, MeaningError for display windows that differ.
 FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most = std::uint64_t{1} << 21);
 
 }  // namespace pellucid

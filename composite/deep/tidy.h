@@ -10,9 +10,9 @@ namespace pellucid {
 
 // zBack <= z: a point at z. Else a volume of even density over [z, zBack].
 struct DeepSample {
-  double z = 0, zBack = 0;   // any unit, finite
-  glm::dvec3 light{0.0};     // premultiplied
-  glm::dvec4 opacity{0.0};   // of R, G, B, and the plain alpha; [0,1] each
+  double z = 0, zBack = 0;  // any unit, finite
+  glm::dvec3 light{0.0};    // premultiplied
+  glm::dvec4 opacity{0.0};  // of R, G, B, and the plain alpha; [0,1] each
   bool isVolume() const { return zBack > z; }
 };
 

@@ -10,8 +10,8 @@ namespace pellucid {
 
 class Environment {
  public:
-  Environment() = default;                       // black
-  explicit Environment(glm::vec3 radiance);      // the same from everywhere, scene-linear, >= 0
+  Environment() = default;                   // black
+  explicit Environment(glm::vec3 radiance);  // the same from everywhere, scene-linear, >= 0
   // Rows from +y down to -y, laid out as shaders/shared/environment.glsl says. Values >= 0, finite.
   explicit Environment(Image<glm::vec3> latLong);
 
@@ -32,8 +32,8 @@ class Environment {
  private:
   glm::vec3 constant_{0.0f};
   Image<glm::vec3> map_;
-  std::vector<double> rows_;       // cumulative, height + 1, the last is 1
-  std::vector<double> columns_;    // per row cumulative, width + 1 each
+  std::vector<double> rows_;     // cumulative, height + 1, the last is 1
+  std::vector<double> columns_;  // per row cumulative, width + 1 each
   double total_ = 0;
 };
 

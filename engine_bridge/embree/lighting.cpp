@@ -79,7 +79,8 @@ glm::vec3 Lighting::direct(const PunctualLight& light, const ShadePoint& point) 
       shading::reflectTowardsEye(point.surface, point.normal, point.toEye, arriving.toLight) * arriving.irradiance;
   if (added == glm::vec3(0.0f) || !shadows_) return added;
   const bool directional = light.direction.w == 0.0f;
-  const float reach = directional ? kInfinity : glm::length(glm::vec3(light.position) - point.position) * (1.0f - 1e-5f);
+  const float reach =
+      directional ? kInfinity : glm::length(glm::vec3(light.position) - point.position) * (1.0f - 1e-5f);
   return blocked(point, arriving.toLight, reach) ? glm::vec3(0.0f) : added;
 }
 

@@ -14,9 +14,10 @@ constexpr std::size_t kFlatTriangles = std::size_t{1} << 18;
 void cullBackFaces(const RTCFilterFunctionNArguments* arguments) {
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i] == 0) continue;
-    const float facing = RTCHitN_Ng_x(arguments->hit, arguments->N, i) * RTCRayN_dir_x(arguments->ray, arguments->N, i) +
-                         RTCHitN_Ng_y(arguments->hit, arguments->N, i) * RTCRayN_dir_y(arguments->ray, arguments->N, i) +
-                         RTCHitN_Ng_z(arguments->hit, arguments->N, i) * RTCRayN_dir_z(arguments->ray, arguments->N, i);
+    const float facing =
+        RTCHitN_Ng_x(arguments->hit, arguments->N, i) * RTCRayN_dir_x(arguments->ray, arguments->N, i) +
+        RTCHitN_Ng_y(arguments->hit, arguments->N, i) * RTCRayN_dir_y(arguments->ray, arguments->N, i) +
+        RTCHitN_Ng_z(arguments->hit, arguments->N, i) * RTCRayN_dir_z(arguments->ray, arguments->N, i);
     const bool mirrored = arguments->geometryUserPtr != nullptr;
     if (mirrored ? facing < 0.0f : facing > 0.0f) arguments->valid[i] = 0;
   }
@@ -33,10 +34,10 @@ bool isOpaque(const Scene& scene, const Instance& instance) {
 RTCGeometry OpaqueScene::triangleGeometry(const Primitive& primitive, const glm::dmat4& transform, bool singleSided,
                                           bool mirrored) const {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                              12, primitive.vertices.size()));
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, primitive.indices.size() / 3));
+  auto* corners = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, primitive.vertices.size()));
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, primitive.indices.size() / 3));
   if (!corners || !indices) {
     rtcReleaseGeometry(geometry);
     throw ResourceError("Embree: memory ran out while laying out triangles, expected less geometry");
@@ -45,8 +46,8 @@ RTCGeometry OpaqueScene::triangleGeometry(const Primitive& primitive, const glm:
     const glm::vec3 p(transform * glm::dvec4(glm::dvec3(primitive.vertices[i].position), 1.0));
     std::memcpy(corners + 3 * i, &p, sizeof p);
   }
-  std::copy(primitive.indices.begin(), primitive.indices.begin() + static_cast<std::ptrdiff_t>(primitive.indices.size() / 3 * 3),
-            indices);
+  std::copy(primitive.indices.begin(),
+            primitive.indices.begin() + static_cast<std::ptrdiff_t>(primitive.indices.size() / 3 * 3), indices);
   // Any pointer that is not null says so to the filter.
   if (mirrored) rtcSetGeometryUserData(geometry, const_cast<Primitive*>(&primitive));
   if (singleSided) rtcSetGeometryIntersectFilterFunction(geometry, cullBackFaces);
@@ -117,7 +118,8 @@ void OpaqueScene::traceBlock(const CameraRays& rays, int x, int y, const std::ar
   RTCRayHit16 packet;
   for (int i = 0; i < 16; ++i) {
     const glm::vec2 sample = samples[static_cast<std::size_t>(i)];
-    const Ray ray = rays.through({x + i % 4 + static_cast<double>(sample.x), y + i / 4 + static_cast<double>(sample.y)});
+    const Ray ray =
+        rays.through({x + i % 4 + static_cast<double>(sample.x), y + i / 4 + static_cast<double>(sample.y)});
     valid[i] = -1;
     packet.ray.org_x[i] = static_cast<float>(ray.origin.x);
     packet.ray.org_y[i] = static_cast<float>(ray.origin.y);
@@ -137,8 +139,8 @@ void OpaqueScene::traceBlock(const CameraRays& rays, int x, int y, const std::ar
   rtcIntersect16(valid, top_, &context, &packet);
   for (int i = 0; i < 16; ++i) {
     const unsigned inner = packet.hit.geomID[i], outer = packet.hit.instID[0][i];
-    hits.instance[i] = inner == RTC_INVALID_GEOMETRY_ID          ? kMissed
-                       : instanceOf_[outer == RTC_INVALID_GEOMETRY_ID ? inner : outer];
+    hits.instance[i] =
+        inner == RTC_INVALID_GEOMETRY_ID ? kMissed : instanceOf_[outer == RTC_INVALID_GEOMETRY_ID ? inner : outer];
     hits.triangle[i] = packet.hit.primID[i];
   }
 }

@@ -1,50 +1,21 @@
 #include "engine_bridge/embree/surface_sampler.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace pellucid::rays {
-namespace {
-
-// Carries normals; unlike the inverse transpose it stands a flattened (singular) matrix.
-glm::dmat3 cofactors(const glm::dmat3& m) {
-  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
-
-}  // namespace
-
-std::vector<Placed> placeInstances(const Scene& scene, const Camera& camera) {
-  std::vector<Placed> all;
-  all.reserve(scene.instances.size());
-  for (const Instance& instance : scene.instances) {
-    Placed placed;
-    placed.viewFromObject = camera.viewFromWorld * instance.worldFromObject;
-    const glm::dmat3 linear(placed.viewFromObject);
-    const double volume = glm::determinant(linear);
-    glm::dmat3 normal = cofactors(linear);
-    double largest = 0;
-    for (int c = 0; c < 3; ++c)
-      for (int r = 0; r < 3; ++r) largest = std::max(largest, std::abs(normal[c][r]));
-    if (largest > 0) normal *= (volume < 0 ? -1.0 : 1.0) / largest;
-    placed.normalFromObject = glm::mat3(normal);
-    placed.thicknessScale = static_cast<float>(std::cbrt(std::abs(volume)));
-    all.push_back(placed);
-  }
-  return all;
-}
-
 Attributes attributesAt(const Primitive& primitive, const Placed& placed, std::size_t triangle,
                         const TriangleHit& hit) {
-  Attributes result{glm::vec3(0.0f), {glm::vec2(0.0f), glm::vec2(0.0f)}, glm::vec4(0.0f)};
-  glm::vec3 normal(0.0f);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vertex& vertex = primitive.vertices[primitive.indices[3 * triangle + i]];
-    const float weight = static_cast<float>(hit.weight[i]);
-    normal += weight * vertex.normal;
-    result.uv[0] += weight * vertex.uv[0];
-    result.uv[1] += weight * vertex.uv[1];
-    result.colour += weight * vertex.colour;
-  }
+  const Vertex* corners[3];
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = &primitive.vertices[primitive.indices[3 * triangle + i]];
+  // From the first corner on: what is the same at all three stays what it is, to the bit. Full coverage is solid.
+  const float second = static_cast<float>(hit.weight[1]), third = static_cast<float>(hit.weight[2]);
+  const auto between = [&](auto member) {
+    const auto start = member(*corners[0]);
+    return start + second * (member(*corners[1]) - start) + third * (member(*corners[2]) - start);
+  };
+  Attributes result;
+  const glm::vec3 normal = between([](const Vertex& vertex) { return vertex.normal; });
+  result.uv[0] = between([](const Vertex& vertex) { return vertex.uv[0]; });
+  result.uv[1] = between([](const Vertex& vertex) { return vertex.uv[1]; });
+  result.colour = between([](const Vertex& vertex) { return vertex.colour; });
   result.normal = placed.normalFromObject * normal;
   return result;
 }

@@ -7,16 +7,9 @@
 #include "engine_bridge/embree/texture_sampler.h"
 #include "engine_bridge/embree/triangle.h"
 #include "engine_bridge/scene/blocks.h"
+#include "engine_bridge/scene/placed.h"
 
 namespace pellucid::rays {
-
-// An instance as seen by a camera.
-struct Placed {
-  glm::dmat4 viewFromObject{1.0};
-  glm::mat3 normalFromObject{1.0f};  // carries normals to view space, any length
-  float thicknessScale = 1.0f;       // metres per unit of object space
-};
-std::vector<Placed> placeInstances(const Scene& scene, const Camera& camera);
 
 // Vertex attributes at a hit.
 struct Attributes {
@@ -39,7 +32,8 @@ class SurfaceSampler {
                              float alphaWidth) const;
 
  private:
-  glm::vec4 texel(const TextureRef& reference, int slot, const MaterialBlock& block, const Attributes& attributes) const;
+  glm::vec4 texel(const TextureRef& reference, int slot, const MaterialBlock& block,
+                  const Attributes& attributes) const;
   glm::vec4 baseAt(const Material& material, const MaterialBlock& block, const Attributes& attributes) const;
 
   const Scene& scene_;

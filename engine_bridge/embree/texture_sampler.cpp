@@ -31,8 +31,7 @@ glm::vec4 sampleTexture(const Texture& texture, glm::vec2 uv, TexelFilter filter
   const int width = texels.width(), height = texels.height();
   const glm::vec2 at = uv * glm::vec2(static_cast<float>(width), static_cast<float>(height));
   if (texture.nearest || filter == TexelFilter::nearest)
-    return texels.at(wrapped(std::floor(at.x), width, texture.wrapS),
-                     wrapped(std::floor(at.y), height, texture.wrapT));
+    return texels.at(wrapped(std::floor(at.x), width, texture.wrapS), wrapped(std::floor(at.y), height, texture.wrapT));
   const float left = std::floor(at.x - 0.5f), top = std::floor(at.y - 0.5f);
   const float fx = at.x - 0.5f - left, fy = at.y - 0.5f - top;
   const int x0 = wrapped(left, width, texture.wrapS), x1 = wrapped(left + 1.0f, width, texture.wrapS);

@@ -70,8 +70,7 @@ std::optional<TriangleHit> intersectHalfOpen(const Ray& ray, const Corners& corn
 
 std::optional<TriangleHit> intersectPlane(const Ray& ray, const Corners& corners) {
   double value[3];
-  for (int i = 0; i < 3; ++i)
-    value[i] = edge(ray, corners.p[(i + 1) % 3], corners.p[(i + 2) % 3], false).value;
+  for (int i = 0; i < 3; ++i) value[i] = edge(ray, corners.p[(i + 1) % 3], corners.p[(i + 2) % 3], false).value;
   return hitOf(value, corners);
 }
 

@@ -14,9 +14,9 @@ struct Corners {
 Corners cornersOf(const Primitive& primitive, const glm::dmat4& viewFromObject, std::size_t triangle);
 
 struct TriangleHit {
-  double z = 0;          // planar metres
+  double z = 0;           // planar metres
   double weight[3] = {};  // of the corners; they sum to 1
-  bool front = true;     // counter-clockwise as the eye sees it
+  bool front = true;      // counter-clockwise as the eye sees it
 };
 
 // Half open: a ray that meets an edge or a corner exactly is taken as if it ran a hair to the right, and then a hair

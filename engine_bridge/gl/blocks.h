@@ -13,10 +13,13 @@ struct FrameBlock {
   glm::vec4 surroundings{0.0f};
   float weightNear = 0, weightFar = 0, weightExponent = 0, depthFactor = 1;
   std::int32_t bandX = 0, bandY = 0, bandWidth = 0, bandUnused = 0;
-  std::int32_t lightCount = 0, orthographic = 0, unused[2] = {0, 0};
+  std::int32_t lightCount = 0, orthographic = 0;
+  glm::vec2 viewport{0.0f};    // pixels
+  glm::vec4 refraction{0.0f};  // PLD_REFRACT_*; metres (fixed); focal length in x and y, pixels
+  glm::vec4 diffusion{0.0f};   // k0, k1 metres; 1 for net coverage
 };
-static_assert(sizeof(FrameBlock) == 128);
+static_assert(sizeof(FrameBlock) == 160);
 static_assert(offsetof(FrameBlock, weightNear) == 80 && offsetof(FrameBlock, bandX) == 96);
-static_assert(offsetof(FrameBlock, lightCount) == 112);
+static_assert(offsetof(FrameBlock, lightCount) == 112 && offsetof(FrameBlock, viewport) == 120);
 
 }  // namespace pellucid::gl

@@ -23,10 +23,40 @@ struct TransparentPass::Impl {
   }
 };
 
+namespace {
+
+// Planes that a pixel has on the device, and what is not among them.
+void describe(const gl::Renderer& renderer, const PassSettings& settings, bool light, PassStatistics& statistics) {
+  statistics.bitsPerPixel = 4 * 128 + 32;  // radiance, weight, opacity, depth; frontZ
+  statistics.passes = 1;
+  statistics.pruned.clear();
+  const auto plane = [&](bool kept, int bits, const char* name, const char* reason) {
+    if (kept)
+      statistics.bitsPerPixel += bits;
+    else
+      statistics.pruned.push_back(std::string(name) + ": " + reason);
+  };
+  plane(light, 128, "additive light", "no material adds light or transmits");
+  plane(renderer.hasSolids(), 128 + 32, "solid pass", "no fragment can hide everything");
+  if (renderer.hasSolids()) statistics.passes += 2;
+  plane(renderer.scatters(), 128 + 32, "scattering planes", "nothing refracts or diffuses");
+  plane(
+      renderer.refracts(), 0, "refraction",
+      settings.scatter.refract == shading::PLD_REFRACT_OFF ? "switched off" : "no material transmits through a volume");
+  plane(renderer.diffuses(), 0, "diffusion",
+        settings.scatter.k0 > 0.0f ? "no material has a collimation below 1" : "switched off");
+}
+
+}  // namespace
+
 TransparentPass::TransparentPass(GlContext&, const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
     : impl_(new Impl{gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}}) {}
 
 TransparentPass::~TransparentPass() = default;
+
+bool TransparentPass::scatters(const PassSettings& settings) const {
+  return impl_->renderer.wouldScatter(settings);
+}
 
 const PassStatistics& TransparentPass::statistics() const {
   return impl_->statistics;
@@ -44,7 +74,11 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
     renderer.begin(part, settings, settings.budgetBytes);
     const std::vector<Window> scissors = renderer.tiles();
     tiles += scissors.size();
-    renderer.targets().beginSums(renderer.canAdd());
+    const bool scatters = renderer.scatters();
+    if (scatters) addScatterPlanes(planes);
+    const bool light = renderer.canAdd() || scatters || !settings.scatter.prune;
+    renderer.targets().beginSums(light, scatters);
+    describe(renderer, settings, light, impl_->statistics);
     renderer.draw(gl::Output::sums, scissors);
     renderer.targets().readSums(planes, part.x0, part.y0);
     if (renderer.hasSolids()) renderer.targets().readSolid(planes.solid, part.x0, part.y0);

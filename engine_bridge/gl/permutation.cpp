@@ -24,6 +24,10 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("TRANSMISSION_TEXTURE", transmits && material.transmissionTexture.texture >= 0);
   define("VOLUME", transmits && hasVolume(material));
   define("THICKNESS_TEXTURE", transmits && hasVolume(material) && material.thicknessTexture.texture >= 0);
+  const bool bends = frame.refracts && (refracts(material) || !frame.prune);
+  define("REFRACTS", bends);
+  define("REFRACTION_TEXTURE", bends && material.thicknessTexture.texture >= 0);
+  define("DIFFUSES", frame.diffuses && (diffuses(material) || !frame.prune));
   return defines;
 }
 
@@ -40,9 +44,11 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
       defines = {"OUTPUT_LIST"};
       break;
     case Output::solid:
-      return {"OUTPUT_SOLID"};
+      return {"OUTPUT_SOLID", "EXACT_COVERAGE"};
   }
+  defines.emplace_back("EXACT_COVERAGE");
   if (frame.solids) defines.emplace_back("SOLIDS");
+  if (frame.scatters() && output != Output::count) defines.emplace_back("SCATTER");
   return defines;
 }
 

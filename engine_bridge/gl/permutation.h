@@ -17,7 +17,11 @@ enum class Output {
 struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;
   bool lights = false, surroundings = false;
-  bool solids = false;  // there is a solid plane to test against
+  bool solids = false;                      // there is a solid plane to test against
+  bool refracts = false, diffuses = false;  // some material of the scene does, and the settings let it
+  bool prune = true;                        // else every material gets the text of every phenomenon
+
+  bool scatters() const { return refracts || diffuses; }
 };
 
 // Defines for shaders/gl/transparent.frag.

@@ -98,6 +98,8 @@ void Renderer::classify() {
       shader.canBeSolid = canBeSolid(material, colours, textures_, largestScale[i]);
       anySolid_ = anySolid_ || shader.canBeSolid;
       canAdd_ = canAdd_ || canBeAdditive(material);
+      anyRefracts_ = anyRefracts_ || pellucid::refracts(material);
+      anyDiffuses_ = anyDiffuses_ || pellucid::diffuses(material);
     }
     shaders_.push_back(std::move(shader));
   }
@@ -112,13 +114,26 @@ std::vector<Window> Renderer::superTiles() const {
   return parts;
 }
 
-void Renderer::begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
-  settings_ = settings;
-  geometryBytes_ = geometryBytes;
+void Renderer::chooseFeatures(const PassSettings& settings) {
+  const bool all = !settings.scatter.prune;
+  features_.prune = settings.scatter.prune;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
   features_.surroundings = settings.surroundings != glm::vec3(0.0f);
-  features_.solids = anySolid_;
+  features_.solids = anySolid_ || all;
+  features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (anyRefracts_ || all);
+  features_.diffuses = settings.scatter.k0 > 0.0f && (anyDiffuses_ || all);
+}
+
+bool Renderer::wouldScatter(const PassSettings& settings) const {
+  return !settings.scatter.prune || (settings.scatter.refract != shading::PLD_REFRACT_OFF && anyRefracts_) ||
+         (settings.scatter.k0 > 0.0f && anyDiffuses_);
+}
+
+void Renderer::begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
+  settings_ = settings;
+  geometryBytes_ = geometryBytes;
+  chooseFeatures(settings);
   for (std::size_t i = 0; i < shaders_.size(); ++i) {
     shaders_[i].surface = surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
                                          shaders_[i].vertexColours, features_);
@@ -143,6 +158,12 @@ void Renderer::begin(const Window& superTile, const PassSettings& settings, std:
   frame_.depthFactor = 1.0f + gbuffer_.depthPrecision;
   frame_.lightCount = lights_;
   frame_.orthographic = camera_.orthographic ? 1 : 0;
+  const double halfWidth = 0.5 * gbuffer_.display.width(), halfHeight = 0.5 * gbuffer_.display.height();
+  frame_.refraction = {static_cast<float>(settings.scatter.refract), settings.scatter.refractDistance,
+                       static_cast<float>(camera_.focal.x * halfWidth),
+                       static_cast<float>(camera_.focal.y * halfHeight)};
+  frame_.diffusion = {settings.scatter.k0, settings.scatter.k1, settings.scatter.netCoverage ? 1.0f : 0.0f, 0.0f};
+  frame_.viewport = glm::vec2(superTile.width(), superTile.height());
   uploadFrame();
 
   glViewport(0, 0, superTile.width(), superTile.height());
@@ -174,7 +195,7 @@ void Renderer::setBand(const Window& band) {
 // Depth first, then the largest radiance at that depth: no order of triangles shows. One program does both, so that
 // the depths compared as equal are the same bits.
 void Renderer::drawSolids() {
-  if (!anySolid_) return;
+  if (!features_.solids) return;
   targets_->beginSolidDepth();
   draw(Output::solid, tiles());
   targets_->beginSolidTies();
@@ -223,13 +244,8 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     glUniform1f(program->thicknessScale, drawable.thicknessScale);
     glUniform1ui(program->instanceIdentity, instance.identity);
     const auto corners = static_cast<GLsizei>(one.triangles * 3);
-    if (output == Output::list) {
-      // The stage pulls its vertices, and knows its triangle by gl_VertexID.
-      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.firstTriangle * 3), corners);
-    } else {
-      const std::size_t firstByte = std::size_t{one.firstTriangle} * 3 * sizeof(std::uint32_t);
-      glDrawElements(GL_TRIANGLES, corners, GL_UNSIGNED_INT, reinterpret_cast<const void*>(firstByte));
-    }
+    // The stage pulls its vertices: it needs all three of a triangle, and its number.
+    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.firstTriangle * 3), corners);
   }
 }
 

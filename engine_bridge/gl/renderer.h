@@ -31,6 +31,11 @@ class Renderer {
   Targets& targets() { return *targets_; }
   bool canAdd() const { return canAdd_; }
   bool hasSolids() const { return features_.solids; }
+  bool scatters() const { return features_.scatters(); }
+  bool refracts() const { return features_.refracts; }
+  bool diffuses() const { return features_.diffuses; }
+  // Whether a pass with these settings would.
+  bool wouldScatter(const PassSettings& settings) const;
   // Scissor tiles of the super-tile, as PassSettings::tile wants them.
   std::vector<Window> tiles() const;
   const GeometryStream& geometry() const { return stream_; }
@@ -66,7 +71,9 @@ class Renderer {
   std::vector<Drawable> drawables_;
   std::vector<Shader> shaders_;
   int lights_ = 0;
-  bool anySolid_ = false, canAdd_ = false;
+  bool anySolid_ = false, canAdd_ = false, anyRefracts_ = false, anyDiffuses_ = false;
+
+  void chooseFeatures(const PassSettings& settings);
 
   PassSettings settings_;
   std::size_t geometryBytes_ = 0;

@@ -41,9 +41,16 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glNamedBufferData(frameBuffer.name(), sizeof(frame), &frame, GL_STATIC_DRAW);
   gl::checkGl("uploading fragments to replay");
 
-  const gl::Program program =
-      gl::buildProgram("gl/fullscreen.vert", "gl/replay.frag",
-                       {"WEIGHT " + std::to_string(weight.kind), "NORMALISATION " + std::to_string(normalisation)});
+  const bool scatters = std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
+    return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
+  });
+  std::vector<std::string> defines{"WEIGHT " + std::to_string(weight.kind),
+                                   "NORMALISATION " + std::to_string(normalisation)};
+  if (scatters) {
+    defines.emplace_back("SCATTER");
+    addScatterPlanes(planes);
+  }
+  const gl::Program program = gl::buildProgram("gl/fullscreen.vert", "gl/replay.frag", defines);
   const gl::VertexArray noVertices = gl::VertexArray::make();
   gl::Targets targets(width, height);
   glDisable(GL_SCISSOR_TEST);
@@ -51,7 +58,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glDisable(GL_CULL_FACE);
   glViewport(0, 0, width, height);
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-  targets.beginSums(true);
+  targets.beginSums(true, scatters);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, fragmentBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, offsetBuffer.name());

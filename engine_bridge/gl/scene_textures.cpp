@@ -42,11 +42,11 @@ void referencesOf(const Material& material, int references[5]) {
 
 }  // namespace
 
-SceneTextures::SceneTextures(const Scene& scene) : scene_(scene) {
+SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   for (const Material& material : scene.materials) {
-    if (!material.transparent()) continue;
+    if (material.transparent() == opaque) continue;
     int references[5];
     referencesOf(material, references);
     for (const int index : references) {

@@ -15,8 +15,9 @@ struct TexelRange {
 
 class SceneTextures {
  public:
-  // Uploads the textures that transparent materials use. Throws ResourceError for one that the device cannot hold.
-  explicit SceneTextures(const Scene& scene);
+  // Uploads the textures that transparent materials use, or those that opaque ones use. Throws ResourceError for one
+  // that the device cannot hold.
+  explicit SceneTextures(const Scene& scene, bool opaque = false);
 
   // Binds a material's textures to units 0-4, as shaders/gl/material.glsl numbers them.
   void bind(const Material& material, TextureFilter filter);

@@ -8,11 +8,8 @@ namespace pellucid::gl {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr GLenum kAllSums[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
-                               GL_COLOR_ATTACHMENT3, GL_COLOR_ATTACHMENT4, GL_COLOR_ATTACHMENT5};
-constexpr GLenum kSumsWithoutLight[] = {
-    GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3, GL_NONE,
-    GL_COLOR_ATTACHMENT5};
+// Attachments: 0 to 4 the sums, of which 4 is light; 5 frontZ; 6 refraction; 7 diffuseZ.
+constexpr GLuint kLight = 4, kFrontZ = 5, kRefraction = 6, kDiffuseZ = 7;
 
 void requireComplete(const Framebuffer& framebuffer) {
   if (glCheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -52,20 +49,38 @@ Targets::Targets(int width, int height) : width_(width), height_(height) {
 }
 
 // Clearing obeys the scissor; draws set theirs.
-void Targets::beginSums(bool light) {
+void Targets::beginSums(bool light, bool scatter) {
+  if (scatter && !refraction_) {
+    refraction_ = add(GL_RGBA32F);
+    diffuseZ_ = add(GL_R32F);
+    glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + kRefraction, refraction_.name(), 0);
+    glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + kDiffuseZ, diffuseZ_.name(), 0);
+    checkGl("making the targets of refraction and diffusion");
+    requireComplete(sumsFrame_);
+  }
   glDisable(GL_SCISSOR_TEST);
   const GLuint frame = sumsFrame_.name();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
-  glNamedFramebufferDrawBuffers(frame, 6, kAllSums);
+  const GLsizei count = scatter ? 8 : 6;
+  GLenum attachments[8];
+  for (GLuint i = 0; i < 8; ++i) attachments[i] = GL_COLOR_ATTACHMENT0 + i;
+  glNamedFramebufferDrawBuffers(frame, count, attachments);
   const float zero[4] = {0, 0, 0, 0};
   const float far[4] = {kInfinity, 0, 0, 0};
   for (GLint i = 0; i < 5; ++i) glClearNamedFramebufferfv(frame, GL_COLOR, i, zero);
-  glClearNamedFramebufferfv(frame, GL_COLOR, 5, far);
-  if (!light) glNamedFramebufferDrawBuffers(frame, 6, kSumsWithoutLight);
+  glClearNamedFramebufferfv(frame, GL_COLOR, GLint{kFrontZ}, far);
+  if (scatter) {
+    glClearNamedFramebufferfv(frame, GL_COLOR, GLint{kRefraction}, zero);
+    glClearNamedFramebufferfv(frame, GL_COLOR, GLint{kDiffuseZ}, far);
+  }
+  if (!light) {
+    attachments[kLight] = GL_NONE;
+    glNamedFramebufferDrawBuffers(frame, count, attachments);
+  }
   glEnable(GL_BLEND);
-  for (GLuint i = 0; i < 6; ++i) {
+  for (GLuint i = 0; i < 8; ++i) {
     glBlendFunci(i, GL_ONE, GL_ONE);
-    glBlendEquationi(i, i == 5 ? GL_MIN : GL_FUNC_ADD);
+    glBlendEquationi(i, i == kFrontZ || i == kDiffuseZ ? GL_MIN : GL_FUNC_ADD);
   }
 }
 
@@ -139,6 +154,10 @@ void Targets::readSums(OitPlanes& planes, int x, int y) const {
   for (std::size_t i = 0; i < 5; ++i)
     readInto(sums_[i], GL_RGBA, width_, height_, &images[i]->at(x, y), images[i]->width());
   readInto(frontZ_, GL_RED, width_, height_, &planes.frontZ.at(x, y), planes.frontZ.width());
+  if (planes.scatters()) {
+    readInto(refraction_, GL_RGBA, width_, height_, &planes.refraction.at(x, y), planes.refraction.width());
+    readInto(diffuseZ_, GL_RED, width_, height_, &planes.diffuseZ.at(x, y), planes.diffuseZ.width());
+  }
   checkGl("reading the planes back");
 }
 

@@ -19,7 +19,9 @@ class Targets {
   int height() const { return height_; }
 
   // Each binds and clears its framebuffer and sets blending, so that the next draws add up.
-  void beginSums(bool light);  // light: plane E takes part; else it stays 0
+  //   light    plane E takes part; else it stays 0
+  //   scatter  the planes of refraction and diffusion take part
+  void beginSums(bool light, bool scatter);
   void beginCount();
   // First the depth of the nearest solid, then per channel the largest radiance among those at that depth.
   void beginSolidDepth();
@@ -27,7 +29,7 @@ class Targets {
   void beginNothing();  // draws leave no pixels, only buffers
 
   void bindSolid() const;  // to texture unit 6; after beginSolidDepth()
-  // Into the planes, the targets' top left pixel at (x, y).
+  // Into the planes, the targets' top left pixel at (x, y); refraction and diffusion where the planes have them.
   void readSums(OitPlanes& planes, int x, int y) const;
   void readSolid(Image<glm::vec4>& solid, int x, int y) const;
   Image<float> readCount() const;
@@ -35,7 +37,7 @@ class Targets {
  private:
   Texture add(GLenum format) const;
   int width_, height_;
-  Texture sums_[5], frontZ_, solid_, solidDepth_, count_;
+  Texture sums_[5], frontZ_, refraction_, diffuseZ_, solid_, solidDepth_, count_;
   Framebuffer sumsFrame_, solidFrame_, countFrame_, emptyFrame_;
 };
 

@@ -21,6 +21,15 @@ struct SubmissionOrder {
   std::uint64_t seed = 0;
 };
 
+// What refraction and diffusion are computed from. MODEL sections 4, 5
+struct ScatterSettings {
+  int refract = shading::PLD_REFRACT_DEPTH;  // PLD_REFRACT_*
+  float refractDistance = 2.0f;              // metres, fixed mode
+  float k0 = 0.3f, k1 = 0.5f;                // metres; k0 = 0 leaves diffusion out
+  bool netCoverage = false;                  // the published listing's factor, which loses clear frosted glass
+  bool prune = true;                         // leave out what the scene's materials do not have; changes no bit
+};
+
 struct PassSettings {
   shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
@@ -31,11 +40,15 @@ struct PassSettings {
   std::size_t budgetBytes = std::size_t{256} << 20;  // geometry, and for lists fragments, resident at once
   int tile = 0;                                      // scissor tiles of this edge in pixels; 0 picks one
   glm::vec3 surroundings{0.0f};                      // constant environment radiance, scene-linear
+  ScatterSettings scatter;
 };
 
 struct PassStatistics {
   std::size_t triangles = 0, chunks = 0, tiles = 0, fragments = 0;
   double seconds = 0;
+  int bitsPerPixel = 0;             // of the planes that were accumulated, solids included
+  int passes = 0;                   // over the geometry
+  std::vector<std::string> pruned;  // what was left out, and why
 };
 
 // A headless GL 4.5 core context: EGL surfaceless, else EGL device. Throws ResourceError when there is none.
@@ -67,6 +80,9 @@ class TransparentPass {
   // Exact lists of every transparent fragment in front of the G-buffer and of the nearest solid, tile by tile, top to
   // bottom; together the tiles cover the data window. Fragments of a pixel are in no order.
   void fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& tile);
+
+  // Whether planes and fragments of such a pass carry refraction or diffusion.
+  bool scatters(const PassSettings& settings) const;
 
   const PassStatistics& statistics() const;
 

@@ -19,6 +19,17 @@ bool hasVolume(const Material& material) {
   return interior && material.thickness > 0.0f && material.attenuationDistance > 0.0f;
 }
 
+bool refracts(const Material& material) {
+  const bool interior = material.thin ? !*material.thin : material.volume;
+  return interior && !material.unlit && material.transmission > 0.0f && material.ior != 1.0f;
+}
+
+bool diffuses(const Material& material) {
+  if (material.collimation) return *material.collimation < 1.0f;
+  return !material.unlit && material.transmission > 0.0f &&
+         (material.roughness > 0.0f || material.diffuseTransmission > 0.0f);
+}
+
 MaterialBlock materialBlock(const Material& material) {
   MaterialBlock block{};
   block.baseColor = material.baseColor;
@@ -27,6 +38,12 @@ MaterialBlock materialBlock(const Material& material) {
   block.volume = glm::vec4(material.attenuationColor,
                            hasVolume(material) ? material.thickness / material.attenuationDistance : 0.0f);
   block.covering = {material.coverage.value_or(1.0f), material.additive ? 1.0f : 0.0f, 0.0f, 0.0f};
+  // One that states no collimation and does not diffuse is clear.
+  block.scattering = {material.collimation ? *material.collimation
+                      : diffuses(material) ? -1.0f
+                                           : 1.0f,
+                      material.diffuseTransmission, refracts(material) ? 1.0f / material.ior : 1.0f,
+                      material.thickness};
   const TextureRef* references[] = {&material.baseColorTexture, &material.metallicRoughnessTexture,
                                     &material.emissiveTexture, &material.transmissionTexture,
                                     &material.thicknessTexture};

@@ -17,8 +17,9 @@ struct MaterialBlock {
   glm::vec4 volume;      // attenuation colour; thickness over attenuation distance
   glm::vec4 covering;    // factor on coverage; 1 for additive
   glm::vec4 uvTransforms[10];
+  glm::vec4 scattering;  // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
 };
-static_assert(sizeof(MaterialBlock) == 15 * 16);
+static_assert(sizeof(MaterialBlock) == 16 * 16);
 
 using shading::PunctualLight;
 static_assert(sizeof(PunctualLight) == 64);
@@ -26,6 +27,9 @@ static_assert(sizeof(PunctualLight) == 64);
 MaterialBlock materialBlock(const Material& material);
 // Interior with a thickness that attenuates: the file's volume unless `thin` says otherwise.
 bool hasVolume(const Material& material);
+// Whether layers of it bend, or spread, what lies behind them.
+bool refracts(const Material& material);
+bool diffuses(const Material& material);
 // Whether a light sends anything.
 bool shines(const Light& light);
 // In the camera's view space.

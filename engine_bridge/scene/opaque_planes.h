@@ -17,14 +17,14 @@ struct LightPlane {
 // Planes of one window. beauty = emission + lights in order + indirect + what is seen behind, per pixel.
 struct OpaquePlanes {
   Window window;
-  Image<glm::vec4> beauty;        // scene-linear, premultiplied; A is 1 everywhere when the surroundings are seen
-  Image<float> viewZ;             // planar metres at the pixel centre, +inf where nothing was hit
-  Image<glm::vec3> normal;        // world, unit, on the side seen, at the pixel centre; 0 where nothing was hit
-  Image<glm::vec3> albedo;        // base colour at the pixel centre, [0,1]
-  Image<float> occlusion;         // open part of the hemisphere, [0,1]; empty when not asked for
+  Image<glm::vec4> beauty;         // scene-linear, premultiplied; A is 1 everywhere when the surroundings are seen
+  Image<float> viewZ;              // planar metres at the pixel centre, +inf where nothing was hit
+  Image<glm::vec3> normal;         // world, unit, on the side seen, at the pixel centre; 0 where nothing was hit
+  Image<glm::vec3> albedo;         // base colour at the pixel centre, [0,1]
+  Image<float> occlusion;          // open part of the hemisphere, [0,1]; empty when not asked for
   std::vector<LightPlane> lights;  // each light's direct light
-  Image<glm::vec3> indirect;      // light of the surroundings; empty when they are black
-  Image<glm::vec3> emission;      // and the colour of unlit materials; empty when nothing emits
+  Image<glm::vec3> indirect;       // light of the surroundings; empty when they are black
+  Image<glm::vec3> emission;       // and the colour of unlit materials; empty when nothing emits
 };
 
 // Planes of this size: nothing was hit.

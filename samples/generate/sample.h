@@ -18,11 +18,13 @@ struct Sample {
 Sample bars();
 Sample bottles();
 Sample smoke();
+Sample foliage();
 
 struct Entry {
   const char* name;
   Sample (*make)();
 };
-inline const std::vector<Entry> kSamples = {{"bars", bars}, {"bottles", bottles}, {"smoke", smoke}};
+inline const std::vector<Entry> kSamples = {
+    {"bars", bars}, {"bottles", bottles}, {"smoke", smoke}, {"foliage", foliage}};
 
 }  // namespace pellucid::samples

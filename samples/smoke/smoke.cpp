@@ -121,7 +121,7 @@ Sample smoke() {
   };
   addWindow(studio.shapes);
 
-  addSmoke(sample.glb, {0.1, 1.05, -1.0}, {0.9, 0.85, 0.9}, studio.toSun);
+  addSmoke(sample.glb, {0.0, 1.05, -1.0}, {1.1, 0.85, 0.9}, studio.toSun);
   addPane(sample.glb, "green pane", {0.7, 0.93, 0.8}, -1.1);
   addPane(sample.glb, "amber pane", {0.97, 0.8, 0.5}, 0.0);
   sample.glb.addCamera("cam", sample.view);

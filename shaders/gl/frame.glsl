@@ -10,6 +10,9 @@ layout(std140, binding = 0) uniform Frame {
   ivec4 band;            // list passes: x, y of the band's top left pixel, its width
   int lightCount;
   int orthographic;
+  vec2 viewport;         // pixels
+  vec4 refraction;       // PLD_REFRACT_*; metres (fixed); focal length in x and y, pixels
+  vec4 diffusion;        // k0, k1 metres; 1 for net coverage
 };
 
 // Row 0 is the top row: the pass sets the clip origin to the upper left.

@@ -2,7 +2,7 @@
 // Appends a fragment to its pixel's list: every pixel of the band owns a range that a first pass has counted.
 #include "gl/frame.glsl"
 #include "gl/fragment_record.glsl"
-#include "shared/accumulate.glsl"
+#include "shared/refraction.glsl"
 
 layout(std430, binding = 3) writeonly buffer Fragments { FragmentRecord fragments[]; };
 layout(std430, binding = 4) buffer Cursors { uint cursors[]; };  // per pixel of the band: where its next fragment goes
@@ -10,14 +10,14 @@ layout(std430, binding = 4) buffer Cursors { uint cursors[]; };  // per pixel of
 layout(location = 4) flat in uint triangleNumber;  // within the primitive
 uniform uint instanceIdentity;
 
-void appendFragment(Layer layer, ivec2 pixel) {
+void appendFragment(Layer layer, Scatter scatter, ivec2 pixel) {
   FragmentRecord record;
   record.radiance = layer.radiance;
   record.coverage = layer.coverage;
   record.transmission = layer.transmission;
   record.z = layer.z;
-  record.offset = vec2(0.0f);
-  record.variance = 0.0f;
+  record.offset = scatter.offset;
+  record.variance = scatter.variance;
   record.identity = identityOf(instanceIdentity, triangleNumber);
   ivec2 inBand = pixel - band.xy;
   uint place = atomicAdd(cursors[inBand.y * band.z + inBand.x], 1u);

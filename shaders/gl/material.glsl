@@ -10,6 +10,7 @@ layout(std140, binding = 1) uniform MaterialValues {
   vec4 volume;              // rgb attenuation colour; a thickness over attenuation distance, object space
   vec4 covering;            // r factor on coverage, g 1 for a material that only adds light
   vec4 uvTransforms[10];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
+  vec4 scattering;          // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
 } material;
 
 layout(binding = 0) uniform sampler2D baseTexture;
@@ -30,6 +31,10 @@ vec2 uvOf(int slot) {
   vec4 v = material.uvTransforms[2 * slot + 1];
   vec3 uv1 = vec3(u.w == 0.0f ? textureUv.xy : textureUv.zw, 1.0f);
   return vec2(dot(u.xyz, uv1), dot(v.xyz, uv1));
+}
+
+float thicknessTexel() {
+  return texture(thicknessTexture, uvOf(4)).g;
 }
 
 // Takes derivatives: to be called before any discard.
@@ -76,7 +81,7 @@ Surface surfaceHere() {
 #ifdef VOLUME
   float ratio = material.volume.a * thicknessScale;
 #ifdef THICKNESS_TEXTURE
-  ratio *= texture(thicknessTexture, uvOf(4)).g;
+  ratio *= thicknessTexel();
 #endif
   // What enters on a front face leaves through a back face: counted once.
   if (gl_FrontFacing) attenuation = attenuationOf(material.volume.rgb, ratio);

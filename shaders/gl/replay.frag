@@ -25,4 +25,10 @@ void main() {
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
   writeSums(layer, settings);
+#ifdef SCATTER
+  Scatter scatter;
+  scatter.offset = record.offset;
+  scatter.variance = record.variance;
+  writeScatter(layer, scatter);
+#endif
 }

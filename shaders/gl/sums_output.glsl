@@ -1,6 +1,6 @@
 #pragma once
-// Adds one layer to the planes by fixed-function blending: targets 0-4 ONE, ONE; target 5 MIN.
-#include "shared/accumulate.glsl"
+// Adds one layer to the planes by fixed-function blending: targets 0-4 and 6 ONE, ONE; targets 5 and 7 MIN.
+#include "shared/refraction.glsl"
 
 layout(location = 0) out vec4 radianceSum;
 layout(location = 1) out vec4 weightSum;
@@ -8,6 +8,10 @@ layout(location = 2) out vec4 opacitySum;
 layout(location = 3) out vec4 depthSum;
 layout(location = 4) out vec4 lightSum;
 layout(location = 5) out float frontZ;
+#ifdef SCATTER
+layout(location = 6) out vec4 refractionSum;
+layout(location = 7) out float diffuseZ;
+#endif
 
 void writeSums(Layer layer, WeightSettings settings) {
   OitTargets targets = packSums(layerSums(layer, settings, NORMALISATION));
@@ -18,3 +22,13 @@ void writeSums(Layer layer, WeightSettings settings) {
   lightSum = targets.light;
   frontZ = layer.z;
 }
+
+#ifdef SCATTER
+// After writeSums().
+void writeScatter(Layer layer, Scatter scatter) {
+  ScatterTargets targets = packScatter(layer, scatter);
+  refractionSum = targets.refraction;
+  lightSum.a = targets.refractionZ;
+  diffuseZ = targets.diffuseZ;
+}
+#endif

@@ -3,6 +3,8 @@
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
+#include "gl/exact_cut.glsl"
+#include "gl/scatter.glsl"
 #if defined(OUTPUT_SUMS)
 #include "gl/sums_output.glsl"
 #elif defined(OUTPUT_COUNT)
@@ -18,6 +20,7 @@ void main() {
   Surface surface = surfaceHere();
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float z = -viewPosition.z;
+  if (outsideTriangle()) discard;
   if (!(z > 0.0f) || !(surface.coverage > 0.0f)) discard;
   if (z > texelFetch(opaqueZ, pixel, 0).r * depthFactor) discard;
 
@@ -58,10 +61,19 @@ void main() {
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
   writeSums(layer, settings);
+#ifdef SCATTER
+  writeScatter(layer, scatterHere(layer, surface, pixel));
+#endif
 #elif defined(OUTPUT_COUNT)
   fragmentCount = 1.0f;
 #else
-  appendFragment(layer, pixel);
+  Scatter scatter;
+  scatter.offset = vec2(0.0f);
+  scatter.variance = 0.0f;
+#ifdef SCATTER
+  scatter = scatterHere(layer, surface, pixel);
+#endif
+  appendFragment(layer, scatter, pixel);
 #endif
 #endif
 }

@@ -1,7 +1,7 @@
 #pragma once
 // A vertex, from attributes; or pulled from storage, where each triangle must know its number: gl_PrimitiveID does not
 // survive clipping on Mesa's software rasteriser.
-#ifdef OUTPUT_LIST
+#ifdef EXACT_COVERAGE
 // Mirrors Vertex in engine_bridge/scene/scene.h, 64 bytes.
 struct PulledVertex {
   vec4 positionNormalX;
@@ -17,19 +17,26 @@ layout(location = 4) flat out uint triangleNumber;
 vec3 position, normal;
 vec4 uv, colour;
 
-void fetchVertex() {
-  PulledVertex v = vertices[indices[gl_VertexID]];
-  position = v.positionNormalX.xyz;
-  normal = vec3(v.positionNormalX.w, v.normalYzUv0.xy);
-  uv = vec4(v.normalYzUv0.zw, v.uv1ColourRg.xy);
-  colour = vec4(v.uv1ColourRg.zw, v.colourBaSpare.xy);
-  triangleNumber = triangleNumbers[gl_VertexID / 3];
+vec3 positionAt(int corner) { return vertices[indices[corner]].positionNormalX.xyz; }
+
+// The vertex that lies at weights `share` (sum 1) of the triangle whose first corner is `first`.
+void fetchVertex(int first, vec3 share) {
+  position = vec3(0.0f);
+  normal = vec3(0.0f);
+  uv = vec4(0.0f);
+  colour = vec4(0.0f);
+  for (int k = 0; k < 3; ++k) {
+    PulledVertex v = vertices[indices[first + k]];
+    position += share[k] * v.positionNormalX.xyz;
+    normal += share[k] * vec3(v.positionNormalX.w, v.normalYzUv0.xy);
+    uv += share[k] * vec4(v.normalYzUv0.zw, v.uv1ColourRg.xy);
+    colour += share[k] * vec4(v.uv1ColourRg.zw, v.colourBaSpare.xy);
+  }
+  triangleNumber = triangleNumbers[first / 3];
 }
 #else
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 uv;  // TEXCOORD_0, TEXCOORD_1
 layout(location = 3) in vec4 colour;
-
-void fetchVertex() {}
 #endif

@@ -19,6 +19,14 @@ struct DiffusionSettings {
   int orthographic;  // not 0: focalPixels is pixels per metre
 };
 
+// c of a transmissive surface that does not state it. [0,1]
+//   roughness  perceptual, [0,1]
+//   diffuse    part of the transmitted light that is scattered evenly, [0,1]
+PLD_FN float collimationOf(float roughness, float diffuse) {
+  precise float collimation = (1.0f - roughness * roughness) * (1.0f - diffuse);
+  return collimation;
+}
+
 // s^2 of one layer. Float pixels^2
 //   collimation  c: 1 clear glass, 0 dense scattering medium
 //   z            planar metres, > 0

@@ -6,14 +6,15 @@ const int PLD_OCCLUSION_RELATIVE = 0;   // depth compared relative to z, sky wei
 const int PLD_OCCLUSION_PUBLISHED = 1;  // listing 2 as printed: 0.01 m, the pixel itself first, black where nothing weighs
 
 const int PLD_LINE_TAPS = 12;
-const float PLD_LINE_STRIDE = 3.0f;  // pixels
+const float PLD_LINE_STRIDE = 1.0f;            // pixels; the nearest neighbours know most
+const float PLD_PUBLISHED_STRIDE = 3.0f;       // pixels
 const int PLD_BOX_RADIUS = 3;
 const float PLD_BOX_STRIDE = 2.0f;  // pixels
 const float PLD_FLAT_GRADIENT = 1e-4f;
 
 // Depth difference at which a neighbour counts half: a part of z, or metres as published.
 const float PLD_OCCLUSION_REACH = 0.01f;
-// Weight below which the neighbours are not believed: half of one neighbour at the rim's own depth. Less of it moves
+// Weight below which the neighbours are not believed: half of a neighbour beside the rim and at its depth. Less moves
 // the answer towards open, so that nothing flickers.
 const float PLD_OCCLUSION_BELIEF = 0.5f;
 // The published floor under the summed weights.
@@ -58,8 +59,9 @@ PLD_FN OcclusionSearch occlusionSearch(vec2 gradient) {
 PLD_FN vec2 occlusionOffset(OcclusionSearch search, int tap, int form) {
   if (search.taps == PLD_LINE_TAPS) {
     // The first published tap is the rim's own pixel, whose depth is the background's; ours starts beside it.
-    float first = form == PLD_OCCLUSION_PUBLISHED ? 0.0f : 1.0f;
-    precise vec2 along = search.towards * (first + float(tap) * PLD_LINE_STRIDE);
+    float place = form == PLD_OCCLUSION_PUBLISHED ? float(tap) * PLD_PUBLISHED_STRIDE
+                                                  : float(tap + 1) * PLD_LINE_STRIDE;
+    precise vec2 along = search.towards * place;
     return along;
   }
   int edge = 2 * PLD_BOX_RADIUS + 1;
@@ -87,12 +89,15 @@ PLD_FN ivec2 occlusionPixel(ivec2 pixel, OcclusionSearch search, int tap, int fo
 //   occlusion  of the neighbour, [0,1], 1 = open
 //   z          of the neighbour, planar metres, +inf where nothing was hit
 //   zHere      of the rim, planar metres, > 0
-PLD_FN vec2 occlusionTap(float occlusion, float z, float zHere, int form) {
+PLD_FN vec2 occlusionTap(OcclusionSearch search, int tap, float occlusion, float z, float zHere, int form) {
   if (z > 1e30f) return vec2(0.0f);
-  precise float reach = form == PLD_OCCLUSION_PUBLISHED ? PLD_OCCLUSION_REACH : PLD_OCCLUSION_REACH * zHere;
-  precise float weight = reach / (reach + abs(zHere - z));
-  precise vec2 tap = vec2(occlusion * weight, weight);
-  return tap;
+  bool published = form == PLD_OCCLUSION_PUBLISHED;
+  precise float reach = published ? PLD_OCCLUSION_REACH : PLD_OCCLUSION_REACH * zHere;
+  // Along a line the farther neighbours only help out: pixels away another leaf begins.
+  float away = published || search.taps != PLD_LINE_TAPS ? 1.0f : float(tap + 1);
+  precise float weight = reach / ((reach + abs(zHere - z)) * away);
+  precise vec2 weighted = vec2(occlusion * weight, weight);
+  return weighted;
 }
 
 // The occlusion that the neighbours' sum means. [0,1], 1 = open

@@ -107,8 +107,9 @@ PLD_FN Layer layerOf(Surface surface, vec3 reflected, float cosEye, float z, boo
 }
 
 // Coverage at the rim of an alpha-tested surface: one pixel wide, centred on the cut. DESIGN, Materials
-//   width  how much alpha changes over one pixel (fwidth)
+//   width  how much alpha changes over one pixel (fwidth); where it does not, there is no rim, and the cut is glTF's >=
 PLD_FN float rimCoverage(float alpha, float cutoff, float width) {
-  precise float rim = (alpha - cutoff) / max(width, 1e-4f) + 0.5f;
+  if (width < 1e-4f) return alpha >= cutoff ? 1.0f : 0.0f;
+  precise float rim = (alpha - cutoff) / width + 0.5f;
   return clamp(rim, 0.0f, 1.0f);
 }

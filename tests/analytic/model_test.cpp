@@ -225,6 +225,8 @@ TEST(Surface, RimIsOnePixelWideAndCentredOnTheCut) {
   EXPECT_EQ(shading::rimCoverage(0.55f, 0.5f, 0.1f), 1.0f);
   EXPECT_EQ(shading::rimCoverage(0.45f, 0.5f, 0.1f), 0.0f);
   EXPECT_EQ(shading::rimCoverage(1.0f, 0.5f, 0.0f), 1.0f);
+  EXPECT_EQ(shading::rimCoverage(1.0f, 1.0f, 0.0f), 1.0f);  // glTF: alpha at the cutoff is covered
+  EXPECT_EQ(shading::rimCoverage(0.4f, 0.5f, 0.0f), 0.0f);
 }
 
 }  // namespace

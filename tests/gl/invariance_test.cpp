@@ -88,9 +88,15 @@ TEST(Invariance, FragmentSetsAreIdentical) {
       expectSameBits(lists.solid[i], plain.solid[i]);
       ASSERT_EQ(lists.pixels[i].size(), plain.pixels[i].size()) << "pixel " << i;
       if (lists.pixels[i].empty()) continue;
-      ASSERT_EQ(std::memcmp(lists.pixels[i].data(), plain.pixels[i].data(), lists.pixels[i].size() * sizeof(Fragment)),
-                0)
-          << "pixel " << i;
+      for (std::size_t k = 0; k < lists.pixels[i].size(); ++k) {
+        const Fragment &found = lists.pixels[i][k], &expected = plain.pixels[i][k];
+        ASSERT_EQ(std::memcmp(&found, &expected, sizeof(Fragment)), 0)
+            << "pixel " << i << ", fragment " << k << ": z " << found.z - expected.z << ", radiance "
+            << found.radiance.r - expected.radiance.r << ", coverage " << found.coverage - expected.coverage
+            << ", transmission " << found.transmission.r - expected.transmission.r << ", identity " << found.identity
+            << " and " << expected.identity << "; budget " << settings.budgetBytes << ", tile " << settings.tile
+            << ", order " << settings.order.kind;
+      }
     }
   }
   EXPECT_GT(mostChunks, 50u);

@@ -18,7 +18,7 @@
 namespace pellucid::test {
 
 Ended runProgram(const std::vector<std::string>& arguments, const RunOptions& options) {
-  const std::string program = PELLUCID_BINARY_DIR "/bin/pellucid";
+  const std::string program = PELLUCID_BINARY_DIR "/bin/" + options.program;
   char outName[] = "/tmp/pellucid-test-out-XXXXXX", errName[] = "/tmp/pellucid-test-err-XXXXXX";
   const int out = mkstemp(outName), err = mkstemp(errName);
   if (out < 0 || err < 0) throw std::runtime_error("cannot make a temporary file");

@@ -12,13 +12,14 @@ struct Ended {
 };
 
 struct RunOptions {
+  std::string program = "pellucid";       // in build/bin
   std::string folder;                     // working directory; "" keeps ours
   std::vector<std::string> environment;   // "NAME=value", added
   long maxFileBytes = -1;                 // RLIMIT_FSIZE with SIGXFSZ ignored: a disk that fills up
   int interruptAfterMs = -1, signal = 0;  // sends `signal` after so long
 };
 
-// `build/bin/pellucid ARGS...`
+// `build/bin/PROGRAM ARGS...`
 Ended runProgram(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
 std::string freshFolder(const std::string& name);  // empty, below the build folder

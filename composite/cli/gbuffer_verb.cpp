@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "composite/cli/results.h"
+#include "composite/cli/shot.h"
+#include "composite/cli/verbs.h"
+#include "engine_bridge/embree/opaque_render.h"
+#include "engine_bridge/gl/opaque_pass.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid::cli {
+namespace {
+
+constexpr int kLongestEdge = 65536;
+constexpr int kMostSamples = 65536;
+
+struct GbufferFlags {
+  std::vector<std::string> scenes;
+  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter;
+  std::optional<int> samples;
+  std::optional<double> aoRadius;
+  std::vector<std::string> overrides;
+  double unit = 1.0, lumensPerWatt = 683.0;
+  int device = -1;
+  RunFlags run;
+};
+
+// "1920x1080"
+Window parseSize(const std::string& text) {
+  int width = 0, height = 0;
+  const char* end = text.data() + text.size();
+  const auto [cross, first] = std::from_chars(text.data(), end, width);
+  if (first == std::errc() && cross != end && *cross == 'x') {
+    const auto [rest, second] = std::from_chars(cross + 1, end, height);
+    if (second == std::errc() && rest == end && width > 0 && height > 0 && width <= kLongestEdge &&
+        height <= kLongestEdge)
+      return {0, 0, width, height};
+  }
+  throw UsageError(fmt::format("--size: found '{}', expected WIDTHxHEIGHT, each from 1 to {}", text, kLongestEdge));
+}
+
+bool isColour(const std::string& text) {
+  return std::count(text.begin(), text.end(), ',') == 2 &&
+         text.find_first_not_of("0123456789+-.eE,") == std::string::npos;
+}
+
+// Says how far a long render is, not more often than one can read.
+class Progress {
+ public:
+  void operator()(double done) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::seconds(5) || done >= 1.0) return;
+    last_ = now;
+    spdlog::info("gbuffer: {:.0f}% of the picture", 100.0 * done);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
+                   Stages& stages) {
+  if (flags.textureFilter == "mipmap")
+    throw UsageError(
+        "--texture-filter: found mipmap, expected bilinear or nearest with --renderer embree: its samples filter");
+  if (flags.textureFilter == "nearest")
+    throw UsageError("--texture-filter: found nearest, expected bilinear with --renderer embree");
+  if (flags.device >= 0) throw UsageError("--device: expected --renderer gl: Embree runs on the CPU");
+  Environment environment;
+  std::vector<std::string> notes;
+  if (isColour(flags.environment))
+    environment = Environment(parseColour(flags.environment, "--environment"));
+  else if (!flags.environment.empty())
+    environment = stages.time("read environment", [&] { return readEnvironment(flags.environment, notes); });
+  say(notes);
+  OpaqueRenderSettings settings;
+  settings.samples = flags.samples.value_or(settings.samples);
+  settings.shadows = flags.shadows != "off";
+  settings.aoRadius = static_cast<float>(flags.aoRadius.value_or(static_cast<double>(settings.aoRadius)));
+  settings.progress = [progress = std::make_shared<Progress>()](double done) { (*progress)(done); };
+  return stages.time("trace", [&] { return renderOpaque(scene, camera, window, window, environment, settings); });
+}
+
+OpaquePlanes rasterise(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
+                       Stages& stages, std::string& device) {
+  if (flags.samples.value_or(1) != 1)
+    throw UsageError(
+        fmt::format("--samples: found {}, expected 1 with --renderer gl: it samples pixel centres", *flags.samples));
+  if (flags.shadows == "exact")
+    throw UsageError("--shadows: found exact, expected off with --renderer gl: it traces no rays");
+  if (flags.aoRadius.value_or(0.0) > 0.0)
+    throw UsageError("--ao-radius: expected --renderer embree: gl traces no rays");
+  OpaquePassSettings settings;
+  settings.filter = flags.textureFilter == "bilinear"  ? TextureFilter::bilinear
+                    : flags.textureFilter == "nearest" ? TextureFilter::nearest
+                                                       : TextureFilter::mipmap;
+  if (isColour(flags.environment))
+    settings.surroundings = parseColour(flags.environment, "--environment");
+  else if (!flags.environment.empty())
+    throw UsageError(fmt::format("--environment: found '{}', expected R,G,B with --renderer gl", flags.environment));
+  GlContext context(flags.device);
+  device = context.description();
+  return stages.time("rasterise", [&] { return rasteriseOpaque(context, scene, camera, window, window, settings); });
+}
+
+void gbuffer(const GbufferFlags& flags) {
+  const Threads threads(flags.run.threads);
+  Stages stages;
+  const Window window = parseSize(flags.size);
+  SceneOptions options;
+  options.metresPerUnit = flags.unit;
+  options.lumensPerWatt = flags.lumensPerWatt;
+  options.overrides = flags.overrides;
+  const Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
+  say(scene.notes);
+  GBuffer frame;
+  frame.display = frame.data = window;
+  const Camera camera = chooseCamera(flags.camera, frame, scene, flags.scenes.front());
+  spdlog::info("camera: {}", camera.origin);
+  const auto opaque = std::count_if(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
+    return !scene.materials[static_cast<std::size_t>(primitive.material)].transparent();
+  });
+  if (opaque == 0)
+    spdlog::info("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
+
+  std::string device = "Embree";
+  const OpaquePlanes planes = flags.renderer == "gl" ? rasterise(flags, scene, camera, window, stages, device)
+                                                     : trace(flags, scene, camera, window, stages);
+  if (flags.renderer == "gl" && !planes.lights.empty())
+    spdlog::info("lights without shadows: --renderer embree traces them");
+  const std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
+  say(stages.time("write",
+                  [&] { return writeLayers(flags.output, window, window, layersOf(planes), attributes, &camera); }));
+  nlohmann::json report{{"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", opaque}};
+  std::size_t triangles = 0;
+  for (const Instance& instance : scene.instances)
+    triangles += scene.primitives[static_cast<std::size_t>(instance.primitive)].indices.size() / 3;
+  RenderCounts counts;
+  counts.triangles = triangles;
+  reportRun(flags.run, stages, counts, device, report);
+}
+
+}  // namespace
+
+void addGbuffer(CLI::App& app) {
+  auto flags = std::make_shared<GbufferFlags>();
+  CLI::App* verb = app.add_subcommand("gbuffer", "The opaque part of a scene: colour, depth, normals, lights");
+  verb->add_option("scenes", flags->scenes, "glTF or GLB; its transparent and alpha-tested materials are left out")
+      ->required();
+  verb->add_option("-o,--output", flags->output, "EXR to write")->required();
+  verb->add_option(
+          "--renderer", flags->renderer,
+          "embree traces shadows, surroundings and AO; gl rasterises pixel centres without any of them in the way")
+      ->check(CLI::IsMember({"embree", "gl"}))
+      ->capture_default_str();
+  verb->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->required();
+  verb->add_option("--camera", flags->camera,
+                   "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
+  verb->add_option("--samples", flags->samples, "Colour samples per pixel, box filter; embree 16, gl 1")
+      ->check(CLI::Range(1, kMostSamples));
+  verb->add_option("--environment", flags->environment,
+                   "Surrounding radiance: R,G,B, or with embree a lat-long EXR (middle +x, top +y); none is black");
+  verb->add_option("--shadows", flags->shadows, "Default: exact with embree, off with gl")
+      ->check(CLI::IsMember({"exact", "off"}));
+  verb->add_option("--ao-radius", flags->aoRadius, "Reach of ambient occlusion in metres, embree 1; 0 leaves AO out")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--texture-filter", flags->textureFilter, "Default: mipmap with gl; embree filters by its samples")
+      ->check(CLI::IsMember({"mipmap", "bilinear", "nearest"}));
+  verb->add_option("--set", flags->overrides,
+                   "MATERIAL.key=value: thin, collimation, coverage, additive, lowResolution, castsShadow")
+      ->allow_extra_args(false);
+  verb->add_option("--unit", flags->unit, "Metres per scene unit")->check(CLI::PositiveNumber)->capture_default_str();
+  verb->add_option("--lumens-per-watt", flags->lumensPerWatt, "glTF lights are photometric, renders are not")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--device", flags->device, "EGL device by number, see inspect --devices");
+  flags->run.addTo(*verb);
+  verb->callback([flags] { gbuffer(*flags); });
+}
+
+}  // namespace pellucid::cli

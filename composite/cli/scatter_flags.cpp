@@ -1,0 +1,124 @@
+#include "composite/cli/scatter_flags.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "gbuffer/errors.h"
+
+namespace pellucid::cli {
+namespace {
+
+float positive(const std::string& text, const std::string& flag, const std::string& form, bool zero = false) {
+  double value = 0;
+  const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good = error == std::errc() && next == text.data() + text.size() && std::isfinite(value) && value < 1e30 &&
+                    (zero ? value >= 0 : value > 0);
+  if (!good) throw UsageError(fmt::format("{}: found '{}', expected {}", flag, text, form));
+  return static_cast<float>(value);
+}
+
+template <class Value>
+Image<float> planeOf(const OitPlanes& planes, Value value) {
+  Image<float> image(planes.data.width(), planes.data.height());
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] = value(i);
+  return image;
+}
+
+}  // namespace
+
+void LookupFlags::addTo(CLI::App& verb) {
+  verb.add_option("--diffusion-kernel", kernel, "Shape of the spread: gaussian, or the published disc of 16 px at most")
+      ->check(CLI::IsMember({"gaussian", "disc"}))
+      ->capture_default_str();
+  verb.add_option("--gather", gather, "exact takes every tap of the spread: slow where it is wide")
+      ->check(CLI::IsMember({"fast", "exact"}))
+      ->capture_default_str();
+}
+
+LookupSettings LookupFlags::settings() const {
+  LookupSettings settings;
+  settings.kernel = kernel == "disc" ? shading::PLD_DIFFUSE_DISC : shading::PLD_DIFFUSE_GAUSSIAN;
+  settings.exact = gather == "exact";
+  if (settings.exact && kernel == "disc")
+    throw UsageError("--gather: found exact, expected fast: the disc has one gather, and its taps are few");
+  return settings;
+}
+
+void ScatterFlags::addTo(CLI::App& verb) {
+  verb.add_option("--refract", refract,
+                  "Where refracted rays meet the background: fixed:METRES, depth, thickness or off")
+      ->capture_default_str();
+  verb.add_option("--diffusion", diffusion, "What a layer's spread is proportional to; netCoverage loses clear glass")
+      ->check(CLI::IsMember({"coverage", "netCoverage", "off"}))
+      ->capture_default_str();
+  verb.add_option("--diffusion-scale", diffusionScale, "K0:K1 in metres: size of the spread, and the distance of half")
+      ->capture_default_str();
+  verb.add_flag("--no-prune", noPrune, "Run the full model, also what no material of the scene needs: for tests");
+}
+
+void ScatterFlags::applyTo(PassSettings& settings) const {
+  ScatterSettings& scatter = settings.scatter;
+  const std::string form = "fixed:METRES, depth, thickness or off", fixed = "fixed:";
+  if (refract.rfind(fixed, 0) == 0) {
+    scatter.refract = shading::PLD_REFRACT_FIXED;
+    scatter.refractDistance = positive(refract.substr(fixed.size()), "--refract", form);
+  } else if (refract == "depth" || refract == "thickness" || refract == "off") {
+    scatter.refract = refract == "depth"       ? shading::PLD_REFRACT_DEPTH
+                      : refract == "thickness" ? shading::PLD_REFRACT_THICKNESS
+                                               : shading::PLD_REFRACT_OFF;
+  } else {
+    throw UsageError(fmt::format("--refract: found '{}', expected {}", refract, form));
+  }
+  const auto colon = diffusionScale.find(':');
+  const std::string pair = "K0:K1 in metres";
+  if (colon == std::string::npos)
+    throw UsageError(fmt::format("--diffusion-scale: found '{}', expected {}", diffusionScale, pair));
+  scatter.k0 = positive(diffusionScale.substr(0, colon), "--diffusion-scale", pair);
+  scatter.k1 = positive(diffusionScale.substr(colon + 1), "--diffusion-scale", pair);
+  if (diffusion == "off") scatter.k0 = 0.0f;
+  scatter.netCoverage = diffusion == "netCoverage";
+  scatter.prune = !noPrune;
+}
+
+const std::vector<std::string>& debugLayerNames() {
+  static const std::vector<std::string> names{"D", "delta", "weight", "count"};
+  return names;
+}
+
+bool wantsDebugLayers(const std::vector<std::string>& layers) {
+  return std::any_of(layers.begin(), layers.end(), [](const std::string& name) {
+    return std::find(debugLayerNames().begin(), debugLayerNames().end(), name) != debugLayerNames().end();
+  });
+}
+
+std::vector<ExtraLayer> debugLayers(const std::vector<std::string>& layers, const OitPlanes& planes) {
+  ExtraLayer debug{"oit", {}};
+  const auto mean = [&](std::size_t i, int component) {
+    return planes.scatters() && planes.refraction[i].z > 0.0f ? planes.refraction[i][component] / planes.refraction[i].z
+                                                              : 0.0f;
+  };
+  for (const std::string& name : layers) {
+    if (name == "D") {
+      debug.channels.emplace_back("D", planeOf(planes, [&](std::size_t i) {
+                                    return planes.scatters() ? std::sqrt(planes.refraction[i].w) : 0.0f;
+                                  }));
+    } else if (name == "delta") {
+      debug.channels.emplace_back("delta.X", planeOf(planes, [&](std::size_t i) { return mean(i, 0); }));
+      debug.channels.emplace_back("delta.Y", planeOf(planes, [&](std::size_t i) { return mean(i, 1); }));
+    } else if (name == "weight") {  // mean weight of the layers: sum of w o over sum of o
+      debug.channels.emplace_back("weight", planeOf(planes, [&](std::size_t i) {
+                                    const float opacity = shading::meanOf(glm::vec3(planes.opacity[i]));
+                                    return opacity > 0.0f ? shading::meanOf(glm::vec3(planes.weight[i])) / opacity
+                                                          : 0.0f;
+                                  }));
+    } else if (name == "count") {
+      debug.channels.emplace_back("count", planeOf(planes, [&](std::size_t i) { return planes.weight[i].a; }));
+    }
+  }
+  return {debug};
+}
+
+}  // namespace pellucid::cli

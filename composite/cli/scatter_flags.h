@@ -1,0 +1,33 @@
+// Flags of refraction and diffusion, and the planes that show what they did.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "composite/gather.h"
+#include "engine_bridge/gl/transparent_pass.h"
+#include "gbuffer/opaque_io.h"
+
+namespace pellucid::cli {
+
+// Of the lookup alone: what the compositing step needs.
+struct LookupFlags {
+  std::string kernel = "gaussian", gather = "fast";
+  void addTo(CLI::App& verb);
+  LookupSettings settings() const;  // throws UsageError
+};
+
+// Of the transparent pass.
+struct ScatterFlags {
+  std::string refract = "depth", diffusion = "coverage", diffusionScale = "0.3:0.5";
+  bool noPrune = false;
+  void addTo(CLI::App& verb);
+  void applyTo(PassSettings& settings) const;  // throws UsageError
+};
+
+// Names of --layers that show planes of the transparent pass, at pixel centres.
+const std::vector<std::string>& debugLayerNames();
+bool wantsDebugLayers(const std::vector<std::string>& layers);
+std::vector<ExtraLayer> debugLayers(const std::vector<std::string>& layers, const OitPlanes& planes);
+
+}  // namespace pellucid::cli

@@ -1,0 +1,143 @@
+#include "composite/study/fit_weight.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "composite/over.h"
+#include "gbuffer/accum.h"
+
+namespace pellucid {
+namespace {
+
+// Which pixel of a cell is its probe: an integer hash, so that no pattern of the picture can hide between them.
+std::uint32_t hashOf(int cellX, int cellY) {
+  std::uint32_t h = static_cast<std::uint32_t>(cellX) * 0x9e3779b1u ^ static_cast<std::uint32_t>(cellY) * 0x85ebca77u;
+  h = (h ^ (h >> 15)) * 0x2c1b3c6du;
+  h = (h ^ (h >> 12)) * 0x297a2d39u;
+  return h ^ (h >> 15);
+}
+
+}  // namespace
+
+WeightProbes::WeightProbes(const GBuffer& gbuffer, std::size_t most) : gbuffer_(gbuffer), cell_(1) {
+  while (gbuffer.beauty.size() / (static_cast<std::size_t>(cell_) * static_cast<std::size_t>(cell_)) > most) ++cell_;
+}
+
+void WeightProbes::add(const FragmentLists& tile) {
+  for (int y = 0; y < tile.window.height(); ++y)
+    for (int x = 0; x < tile.window.width(); ++x) {
+      const int px = tile.window.x0 + x - gbuffer_.data.x0, py = tile.window.y0 + y - gbuffer_.data.y0;
+      const std::uint32_t hash = hashOf(px / cell_, py / cell_);
+      const auto side = static_cast<std::uint32_t>(cell_);
+      if (px % cell_ != static_cast<int>(hash % side) || py % cell_ != static_cast<int>(hash / side % side)) continue;
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(tile.window.width()) + static_cast<std::size_t>(x);
+      const glm::vec4 behind = gbuffer_.beauty.at(px, py);
+      if (tile.offsets[pixel] == tile.offsets[pixel + 1] || !std::isfinite(behind.r + behind.g + behind.b)) continue;
+      fragments_.emplace_back(tile.fragments.begin() + static_cast<std::ptrdiff_t>(tile.offsets[pixel]),
+                              tile.fragments.begin() + static_cast<std::ptrdiff_t>(tile.offsets[pixel + 1]));
+      solids_.push_back(tile.solid.at(x, y));
+      backgrounds_.emplace_back(behind);
+    }
+}
+
+// The probes as one row of pixels, and the truth of them.
+struct WeightFitter {
+  FragmentLists lists;
+  std::vector<glm::dvec3> truth;
+  const WeightProbes& probes;
+  int normalisation;
+  WeightFit& fit;
+
+  WeightFitter(const WeightProbes& from, int rule, WeightFit& result) : probes(from), normalisation(rule), fit(result) {
+    const int count = static_cast<int>(from.count());
+    lists.window = {0, 0, count, 1};
+    lists.solid = Image<glm::vec4>(count, 1);
+    lists.offsets.assign(1, 0);
+    for (std::size_t i = 0; i < from.count(); ++i) {
+      lists.fragments.insert(lists.fragments.end(), from.fragments_[i].begin(), from.fragments_[i].end());
+      lists.offsets.push_back(lists.fragments.size());
+      lists.solid[i] = from.solids_[i];
+    }
+    Veil veil(count, 1);
+    compositeSorted(lists, lists.window, veil);
+    truth = shown(veil);
+  }
+  std::vector<glm::dvec3> shown(const Veil& veil) const {
+    std::vector<glm::dvec3> pictures;
+    for (std::size_t i = 0; i < veil.light.size(); ++i)
+      pictures.push_back(glm::dvec3(veil.light[i]) +
+                         glm::dvec3(veil.transmission[i]) * glm::dvec3(probes.backgrounds_[i]));
+    return pictures;
+  }
+  double attempt(const shading::WeightSettings& weight) {
+    Veil veil(lists.window.width(), 1);
+    compositeBy(*chooseMethod("weighted"), {0, weight, normalisation}, lists, lists.window, veil);
+    const std::vector<glm::dvec3> got = shown(veil);
+    double sum = 0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      const glm::dvec3 d = glm::abs(got[i] - truth[i]);
+      sum += d.r + d.g + d.b;
+    }
+    const double error = sum / (3.0 * static_cast<double>(got.size()));
+    fit.tried.emplace_back(weightText(weight), error);
+    if (fit.probes == 0 || error < fit.meanError) {
+      fit.meanError = error;
+      fit.weight = weight;
+    }
+    fit.probes = got.size();
+    return error;
+  }
+};
+
+WeightFit fitWeight(const WeightProbes& probes, const shading::WeightSettings& given, int normalisation) {
+  WeightFit fit;
+  fit.weight = given;
+  if (probes.count() == 0) return fit;
+  WeightFitter fitter(probes, normalisation, fit);
+  float low = fitter.lists.fragments[0].z, high = low;
+  for (const Fragment& fragment : fitter.lists.fragments) {
+    low = std::min(low, fragment.z);
+    high = std::max(high, fragment.z);
+  }
+  for (int kind = shading::PLD_WEIGHT_EQ5; kind <= shading::PLD_WEIGHT_UNIFORM; ++kind) {
+    if (kind == shading::PLD_WEIGHT_POWER) continue;
+    shading::WeightSettings weight = given;
+    weight.kind = kind;
+    fitter.attempt(weight);
+    const bool ranged =
+        kind == shading::PLD_WEIGHT_EQ5 || kind == shading::PLD_WEIGHT_EQ10 || kind == shading::PLD_WEIGHT_EQ10Z;
+    if (!ranged) continue;
+    for (const float nearShare : {0.25f, 0.5f, 0.9f})
+      for (const float farShare : {1.1f, 4.0f, 100.0f}) {
+        weight.rangeNear = low * nearShare;
+        weight.rangeFar = high * farShare;
+        fitter.attempt(weight);
+      }
+  }
+  shading::WeightSettings power = given;
+  power.kind = shading::PLD_WEIGHT_POWER;
+  float best = 1.0f;
+  double least = INFINITY;
+  const auto tryPower = [&](float exponent) {
+    power.exponent = exponent;
+    const double error = fitter.attempt(power);
+    if (error < least) least = error, best = exponent;
+  };
+  for (const float exponent : {0.5f, 1.0f, 2.0f, 3.0f, 4.0f, 6.0f, 8.0f, 12.0f, 16.0f, 24.0f, 32.0f})
+    tryPower(exponent);
+  for (float step = 0.25f; step > 0.01f; step *= 0.5f) {
+    const float centre = best;
+    tryPower(centre * (1.0f - step));
+    tryPower(centre * (1.0f + step));
+  }
+  std::stable_sort(fit.tried.begin(), fit.tried.end(),
+                   [](const auto& a, const auto& b) { return a.second < b.second; });
+  return fit;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,27 @@
+// The error a user can live with, guaranteed: pixels whose weighted mean provably lies within it keep it, the others
+// are composited exactly. MODEL section 9
+#pragma once
+#include <cstddef>
+
+#include "composite/methods/method.h"
+#include "composite/veil.h"
+#include "gbuffer/fragments.h"
+#include "gbuffer/gbuffer.h"
+
+namespace pellucid {
+
+struct ToleranceCounts {
+  std::size_t certified = 0, recomputed = 0;  // touched pixels
+};
+
+// Largest possible |weighted - sorted| of a pixel, per channel: truth and estimate are means of the same U = C / o, so
+// they differ by at most (1 - beta)(Umax - Umin), and additive light by (1 - beta) of it. Includes a bound on the
+// rounding of the float sums.
+glm::dvec3 errorBound(const std::vector<MethodLayer>& layers);
+
+// |x - truth| <= tolerance * max(1, |x|) for every pixel and channel x of the picture over `background`, without its
+// own rounding to float. Writes the veil of the lists' window.
+void compositeWithin(const FragmentLists& lists, const MethodChoice& choice, const GBuffer& background,
+                     double tolerance, Veil& veil, ToleranceCounts& counts);
+
+}  // namespace pellucid

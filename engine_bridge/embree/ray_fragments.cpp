@@ -1,0 +1,187 @@
+#include "engine_bridge/embree/ray_fragments.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine_bridge/embree/surface_sampler.h"
+#include "engine_bridge/embree/transparent_scene.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+namespace {
+
+using namespace rays;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kFirstRows = 16;  // of a band; then as many as the budget seems to hold
+
+struct Row {
+  std::vector<std::uint32_t> counts;
+  std::vector<Fragment> fragments;
+  std::vector<glm::vec4> solid;
+};
+
+bool nearer(const Fragment& a, const Fragment& b) {
+  return a.z != b.z ? a.z < b.z : a.identity < b.identity;
+}
+
+}  // namespace
+
+struct RayFragments::Impl {
+  const Scene& scene;
+  const GBuffer& gbuffer;
+  Camera camera;
+  CameraRays rays;
+  TransparentScene traced;
+  std::vector<PunctualLight> lights;
+
+  Impl(const Scene& sceneGiven, const GBuffer& gbufferGiven, const Camera& cameraGiven)
+      : scene(sceneGiven),
+        gbuffer(gbufferGiven),
+        camera(cameraGiven),
+        rays(camera, gbuffer.display),
+        traced(scene, camera),
+        lights(lightBlocks(scene.lights, camera)) {}
+
+  Ray rayOf(int x, int y, const PassSettings& settings) const {
+    return rays.through({x + settings.sample.x, y + settings.sample.y});
+  }
+  float alphaWidth(const Crossing& crossing, const Primitive& primitive, int x, int y, const SurfaceSampler& sampler,
+                   const PassSettings& settings) const;
+  std::optional<Fragment> shade(const Crossing& crossing, const Ray& ray, int x, int y, const SurfaceSampler& sampler,
+                                const PassSettings& settings) const;
+  void pixel(int column, int row, const SurfaceSampler& sampler, const PassSettings& settings,
+             std::vector<Crossing>& crossings, Row& out) const;
+};
+
+// fwidth(alpha) as GL takes it: differences between neighbours of the pixel's 2x2 quad, on the triangle's plane.
+float RayFragments::Impl::alphaWidth(const Crossing& crossing, const Primitive& primitive, int x, int y,
+                                     const SurfaceSampler& sampler, const PassSettings& settings) const {
+  const Placed& placed = traced.placed(crossing.instance);
+  const Corners corners = cornersOf(primitive, placed.viewFromObject, crossing.triangle);
+  const auto alpha = [&](int atX, int atY) {
+    const std::optional<TriangleHit> hit = intersectPlane(rayOf(atX, atY, settings), corners);
+    if (!hit) return 0.0f;
+    return sampler.alphaAt(primitive.material, attributesAt(primitive, placed, crossing.triangle, *hit));
+  };
+  // Quads count from the corner of the data window.
+  const int left = x - ((x - gbuffer.data.x0) & 1), top = y - ((y - gbuffer.data.y0) & 1);
+  const float across = alpha(left + 1, y) - alpha(left, y), down = alpha(x, top + 1) - alpha(x, top);
+  const float width = std::abs(across) + std::abs(down);
+  return std::isfinite(width) ? width : kInfinity;
+}
+
+// Mirrors main() of shaders/gl/transparent.frag.
+std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, const Ray& ray, int x, int y,
+                                                  const SurfaceSampler& sampler, const PassSettings& settings) const {
+  const Instance& instance = scene.instances[crossing.instance];
+  const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
+  const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+  const Placed& placed = traced.placed(crossing.instance);
+  const Attributes attributes = attributesAt(primitive, placed, crossing.triangle, crossing.hit);
+  const bool smooth = material.alphaMode == AlphaMode::mask && settings.mask == MaskEdge::smooth;
+  const float width = smooth ? alphaWidth(crossing, primitive, x, y, sampler, settings) : 0.0f;
+  const shading::Surface surface =
+      sampler.surfaceAt(primitive.material, attributes, placed.thicknessScale, crossing.hit.front,
+                        settings.mask == MaskEdge::smooth ? RimKind::smooth : RimKind::hard, width);
+  if (!(surface.coverage > 0.0f)) return std::nullopt;
+
+  const glm::vec3 position(ray.origin + crossing.hit.z * ray.direction);
+  float cosEye = 1.0f;
+  glm::vec3 reflected(0.0f);
+  if (material.unlit) {
+    reflected = surface.baseColor;
+  } else {
+    const glm::vec3 toEye = rays.orthographic() ? glm::vec3(0, 0, 1) : glm::normalize(-position);
+    const glm::vec3 normal = shading::normalTowardsEye(attributes.normal, crossing.hit.front, toEye);
+    cosEye = std::clamp(glm::dot(normal, toEye), shading::PLD_GRAZING, 1.0f);
+    reflected = shading::reflectSurroundings(surface, cosEye) * settings.surroundings;
+    for (const PunctualLight& light : lights) {
+      const shading::Arriving arriving = shading::arrivingAt(light, position);
+      reflected += shading::reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
+    }
+  }
+  const shading::Layer layer =
+      shading::layerOf(surface, reflected, cosEye, static_cast<float>(crossing.hit.z), material.additive);
+  Fragment fragment{};
+  fragment.radiance = glm::min(layer.radiance, glm::vec3(shading::PLD_BRIGHTEST));
+  fragment.coverage = layer.coverage;
+  fragment.transmission = layer.transmission;
+  fragment.z = layer.z;
+  fragment.identity = shading::identityOf(instance.identity, crossing.triangle);
+  return fragment;
+}
+
+void RayFragments::Impl::pixel(int column, int row, const SurfaceSampler& sampler, const PassSettings& settings,
+                               std::vector<Crossing>& crossings, Row& out) const {
+  const int x = gbuffer.data.x0 + column, y = gbuffer.data.y0 + row;
+  const Ray ray = rayOf(x, y, settings);
+  const float limit = gbuffer.viewZ.at(column, row) * (1.0f + gbuffer.depthPrecision);
+  crossings.clear();
+  traced.cross(ray, limit, crossings);
+  const std::size_t first = out.fragments.size();
+  glm::vec4 solid(0, 0, 0, kInfinity);
+  for (const Crossing& crossing : crossings) {
+    if (static_cast<float>(crossing.hit.z) > limit) continue;
+    const std::optional<Fragment> fragment = shade(crossing, ray, x, y, sampler, settings);
+    if (!fragment) continue;
+    if (!shading::isSolid(fragment->coverage, fragment->transmission)) {
+      out.fragments.push_back(*fragment);
+    } else if (fragment->z < solid.a) {
+      solid = glm::vec4(fragment->radiance, fragment->z);
+    } else if (fragment->z == solid.a) {
+      // At the same depth the larger radiance of each channel: no order shows.
+      solid = glm::vec4(glm::max(glm::vec3(solid), fragment->radiance), solid.a);
+    }
+  }
+  const auto begin = out.fragments.begin() + static_cast<std::ptrdiff_t>(first);
+  out.fragments.erase(
+      std::remove_if(begin, out.fragments.end(), [&](const Fragment& fragment) { return fragment.z > solid.a; }),
+      out.fragments.end());
+  std::sort(out.fragments.begin() + static_cast<std::ptrdiff_t>(first), out.fragments.end(), nearer);
+  out.counts.push_back(static_cast<std::uint32_t>(out.fragments.size() - first));
+  out.solid.push_back(solid);
+}
+
+RayFragments::RayFragments(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
+    : impl_(new Impl(scene, gbuffer, camera)) {}
+RayFragments::~RayFragments() = default;
+
+void RayFragments::fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& band) {
+  if (settings.filter == TextureFilter::mipmap)
+    throw UsageError("--texture-filter: found mipmap, expected bilinear or nearest: fragments by rays read level 0");
+  const SurfaceSampler sampler(
+      impl_->scene, settings.filter == TextureFilter::nearest ? TexelFilter::nearest : TexelFilter::bilinear);
+  const Window& data = impl_->gbuffer.data;
+  int rows = kFirstRows;
+  for (int top = 0; top < data.height();) {
+    rows = std::min(rows, data.height() - top);
+    std::vector<Row> done(static_cast<std::size_t>(rows));
+    tbb::parallel_for(0, rows, [&](int i) {
+      std::vector<Crossing> crossings;
+      Row& row = done[static_cast<std::size_t>(i)];
+      for (int x = 0; x < data.width(); ++x) impl_->pixel(x, top + i, sampler, settings, crossings, row);
+    });
+    FragmentLists lists;
+    lists.window = {data.x0, data.y0 + top, data.x1, data.y0 + top + rows};
+    lists.offsets.assign(1, 0);
+    lists.solid = Image<glm::vec4>(data.width(), rows);
+    for (int i = 0; i < rows; ++i) {
+      const Row& row = done[static_cast<std::size_t>(i)];
+      for (const std::uint32_t count : row.counts) lists.offsets.push_back(lists.offsets.back() + count);
+      lists.fragments.insert(lists.fragments.end(), row.fragments.begin(), row.fragments.end());
+      std::copy(row.solid.begin(), row.solid.end(), lists.solid.row(i));
+    }
+    band(lists);
+    top += rows;
+    // Rows and lists hold each fragment once, for a moment together.
+    const std::size_t each = 2 * lists.fragments.size() * sizeof(Fragment) / static_cast<std::size_t>(rows) +
+                             64 * lists.solid.size() / static_cast<std::size_t>(rows);
+    rows = static_cast<int>(std::clamp<std::size_t>(settings.budgetBytes / std::max<std::size_t>(each, 1), 1, 256));
+  }
+}
+
+}  // namespace pellucid

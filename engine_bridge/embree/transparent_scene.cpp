@@ -1,0 +1,87 @@
+#include "engine_bridge/embree/transparent_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid::rays {
+
+struct TransparentScene::Query {
+  RTCIntersectContext context;  // first, so that a pointer to it is one to this
+  const Ray* ray;
+  std::vector<Crossing>* crossings;
+};
+
+// Wider than the triangle by far more than the rounding of Embree's own arithmetic, which is in float.
+void TransparentScene::boundsOf(const RTCBoundsFunctionArguments* arguments) {
+  const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
+  const TransparentScene& owner = *part.owner;
+  const Corners corners =
+      cornersOf(owner.primitiveOf(part.instance), owner.placed_[part.instance].viewFromObject, arguments->primID);
+  const glm::dvec3 low = glm::min(corners.p[0], glm::min(corners.p[1], corners.p[2]));
+  const glm::dvec3 high = glm::max(corners.p[0], glm::max(corners.p[1], corners.p[2]));
+  const glm::dvec3 reach = glm::max(glm::abs(low), glm::abs(high));
+  const double slack = 2e-6 * std::max({reach.x, reach.y, reach.z});
+  RTCBounds& box = *arguments->bounds_o;
+  box.lower_x = static_cast<float>(low.x - slack);
+  box.lower_y = static_cast<float>(low.y - slack);
+  box.lower_z = static_cast<float>(low.z - slack);
+  box.upper_x = static_cast<float>(high.x + slack);
+  box.upper_y = static_cast<float>(high.y + slack);
+  box.upper_z = static_cast<float>(high.z + slack);
+}
+
+// Collects, and leaves Embree's ray as it is: so it goes on to the next box.
+void TransparentScene::test(const RTCIntersectFunctionNArguments* arguments) {
+  if (arguments->valid[0] == 0) return;
+  const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
+  const TransparentScene& owner = *part.owner;
+  auto* query = reinterpret_cast<Query*>(arguments->context);
+  const Corners corners =
+      cornersOf(owner.primitiveOf(part.instance), owner.placed_[part.instance].viewFromObject, arguments->primID);
+  const std::optional<TriangleHit> hit = intersectHalfOpen(*query->ray, corners, owner.orthographic_);
+  if (!hit || !(hit->z > 0.0) || (part.singleSided && !hit->front)) return;
+  query->crossings->push_back({part.instance, arguments->primID, *hit});
+}
+
+TransparentScene::TransparentScene(const Scene& scene, const Camera& camera)
+    : scene_(scene), orthographic_(camera.orthographic), placed_(placeInstances(scene, camera)), top_(device_) {
+  rtcSetSceneFlags(top_, RTC_SCENE_FLAG_ROBUST);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(scene.instances[i].primitive));
+    const Material& material = scene.materials.at(static_cast<std::size_t>(primitive.material));
+    if (material.transparent()) parts_.push_back({this, static_cast<std::uint32_t>(i), !material.doubleSided});
+  }
+  for (Part& part : parts_) {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitiveOf(part.instance).indices.size() / 3));
+    rtcSetGeometryUserData(geometry, &part);
+    rtcSetGeometryBoundsFunction(geometry, boundsOf, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, test);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(top_, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(top_);
+  device_.check("building the BVH of transparent triangles");
+}
+
+void TransparentScene::cross(const Ray& ray, float reach, std::vector<Crossing>& crossings) const {
+  Query query{};
+  rtcInitIntersectContext(&query.context);
+  query.ray = &ray;
+  query.crossings = &crossings;
+  RTCRayHit packet{};
+  packet.ray.org_x = static_cast<float>(ray.origin.x);
+  packet.ray.org_y = static_cast<float>(ray.origin.y);
+  packet.ray.org_z = static_cast<float>(ray.origin.z);
+  packet.ray.dir_x = static_cast<float>(ray.direction.x);
+  packet.ray.dir_y = static_cast<float>(ray.direction.y);
+  packet.ray.dir_z = static_cast<float>(ray.direction.z);
+  packet.ray.tfar = reach * 1.0001f;  // boxes are found in float; what is beyond is left to the caller's test
+  packet.ray.mask = 0xffffffffu;
+  packet.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  packet.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(top_, &query.context, &packet);
+}
+
+}  // namespace pellucid::rays

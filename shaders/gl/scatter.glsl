@@ -1,0 +1,55 @@
+#pragma once
+// Refraction and diffusion of the layer under this fragment.
+#include "gl/frame.glsl"
+#include "gl/material.glsl"
+#include "shared/diffusion.glsl"
+#ifdef SCATTER
+
+// Depth of what stands behind all layers, planar metres.
+float backdropZ(ivec2 pixel) {
+  float z = texelFetch(opaqueZ, pixel, 0).r;
+#ifdef SOLIDS
+  z = min(z, texelFetch(solid, pixel, 0).a);
+#endif
+  return z;
+}
+
+Scatter scatterHere(Layer layer, Surface surface, ivec2 pixel) {
+  Scatter scatter;
+  scatter.offset = vec2(0.0f);
+  scatter.variance = 0.0f;
+#ifdef REFRACTS
+  // Entering faces only: along the ray that has not been bent, back faces would reflect all.
+  if (gl_FrontFacing && material.scattering.z != 1.0f) {
+    vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
+    vec3 normal = normalTowardsEye(viewNormal, true, toEye);
+    RefractionSettings settings;
+    settings.mode = int(refraction.x);
+    settings.distance = refraction.y;
+    settings.focalX = refraction.z;
+    settings.focalY = refraction.w;
+    settings.orthographic = orthographic;
+    float thickness = material.scattering.w * thicknessScale;
+#ifdef REFRACTION_TEXTURE
+    thickness *= thicknessTexel();
+#endif
+    scatter.offset = recordedOffset(refractionOffset(settings, viewPosition, toEye, normal, material.scattering.z,
+                                                     backdropZ(pixel), thickness));
+  }
+#endif
+#ifdef DIFFUSES
+  DiffusionSettings settings;
+  settings.k0 = diffusion.x;
+  settings.k1 = diffusion.y;
+  settings.netCoverage = int(diffusion.z);
+  settings.focalPixels = refraction.z;
+  settings.orthographic = orthographic;
+  float collimation = material.scattering.x >= 0.0f
+                          ? material.scattering.x
+                          : collimationOf(surface.roughness, material.scattering.y);
+  scatter.variance = layerVariance(settings, layer.coverage, layer.transmission, collimation, layer.z,
+                                   backdropZ(pixel));
+#endif
+  return scatter;
+}
+#endif

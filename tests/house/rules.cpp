@@ -1,0 +1,165 @@
+#include "tests/house/rules.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace pellucid::test {
+namespace {
+
+using Names = std::set<std::string>;
+
+// What a room's files may include. A room that is not listed here may be included by nobody and include nothing.
+const std::map<std::string, Names> kArrows = {
+    {"shaders", {"shaders"}},
+    {"gbuffer", {"gbuffer", "shaders"}},
+    {"engine_bridge", {"engine_bridge", "gbuffer", "shaders"}},
+    {"composite", {"composite", "gbuffer", "shaders"}},
+    {"composite/cli", {"composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"samples", {"samples", "composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"bench", {"bench", "samples", "composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"tests", {"tests", "bench", "samples", "composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
+};
+
+struct Library {
+  const char* prefix;  // of the include
+  Names homes;         // folders that may include it, besides tests
+};
+const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl"}},
+                              {"EGL/", {"engine_bridge/gl"}},
+                              {"GL/", {"engine_bridge/gl"}},
+                              {"embree3/", {"engine_bridge/embree"}},
+                              {"OpenEXR/", {"gbuffer", "samples/generate"}}};
+
+bool isBelow(const std::string& path, const std::string& folder) {
+  return path.rfind(folder + "/", 0) == 0;
+}
+
+std::string at(const SourceFile& file, int line) {
+  return file.path + ":" + std::to_string(line) + ": ";
+}
+
+// GLSL includes count from shaders/, a file of the same folder may be named alone.
+std::string resolved(const SourceFile& file, const std::string& include) {
+  if (isBelow(file.path, "shaders") && (isBelow(include, "shared") || isBelow(include, "gl")))
+    return "shaders/" + include;
+  if (include.find('/') == std::string::npos) return file.path.substr(0, file.path.rfind('/') + 1) + include;
+  return std::filesystem::path(include).lexically_normal().string();
+}
+
+struct Pattern {
+  std::regex found;
+  const char* what;
+};
+
+const std::vector<Pattern>& sharedPatterns() {
+  static const std::vector<Pattern> patterns = {
+      {std::regex(R"((^|[^A-Za-z0-9_.])(\d+\.\d*|\.\d+|\d+(?=[eE]))([eE][-+]?\d+)?(?![0-9.eEfFuU]))"),
+       "a double literal; expected the suffix f"},
+      {std::regex(R"([A-Za-z0-9_)\]]\s*\.\s*([xyzw]{2,4}|[rgba]{2,4}|[stpq]{2,4})\b)"),
+       "a multi-letter swizzle, which GLM has none of here"},
+      {std::regex(
+           R"(\b(sample|input|output|filter|common|active|half|buffer|shared|flat|patch|and|or|not|new|near|far)\b)"),
+       "a word that GLSL, C++ or Windows keeps for itself"},
+      {std::regex(R"(\b(double|dvec[234]|dmat[234])\b)"), "double precision; expected float only"},
+      {std::regex(R"(\b(inout|out)\b)"), "a parameter by reference; expected results in a struct"},
+      {std::regex(R"(\b(gl_\w+|texture\w*|texelFetch\w*|dFd[xy]\w*|fwidth\w*|discard|uniform)\b)"),
+       "sampling, derivatives or GL state; expected in shaders/gl/"},
+  };
+  return patterns;
+}
+
+bool isAllowedDirective(const std::string& line) {
+  static const std::regex allowed(R"re(^#pragma once\s*$|^#include "shared/\w+\.glsl"\s*$)re");
+  return std::regex_search(line, allowed);
+}
+
+}  // namespace
+
+const std::vector<std::string>& rooms() {
+  static const std::vector<std::string> names = {"shaders", "gbuffer", "engine_bridge", "composite",
+                                                 "samples", "bench",   "tests"};
+  return names;
+}
+
+std::string roomOf(const std::string& path) {
+  if (isBelow(path, "composite/cli")) return "composite/cli";
+  return path.substr(0, path.find('/'));
+}
+
+Violations againstArrows(const SourceFile& file) {
+  Violations found;
+  const std::string from = roomOf(file.path);
+  const auto arrows = kArrows.find(from);
+  if (arrows == kArrows.end()) return {file.path + ": lies in no room that the arrows know"};
+  for (const Include& include : includesOf(file.text)) {
+    const std::string path = resolved(file, include.name), to = roomOf(path);
+    // In angle brackets only what names one of our rooms is ours.
+    if (!include.quoted && (path.find('/') == std::string::npos || !kArrows.count(to) ||
+                            !std::filesystem::exists(std::string(PELLUCID_SOURCE_DIR "/") + path)))
+      continue;
+    if (!kArrows.count(to))
+      found.push_back(at(file, include.line) + "includes \"" + include.name +
+                      "\", which is in no room; expected a path from the top");
+    else if (!arrows->second.count(to))
+      found.push_back(at(file, include.line) + from + " includes " + include.name + " of " + to);
+  }
+  return found;
+}
+
+Violations libraryOutsideItsRoom(const SourceFile& file) {
+  Violations found;
+  if (roomOf(file.path) == "tests") return found;
+  for (const Include& include : includesOf(file.text))
+    for (const Library& library : kLibraries) {
+      const bool home = std::any_of(library.homes.begin(), library.homes.end(),
+                                    [&](const std::string& folder) { return isBelow(file.path, folder); });
+      if (include.name.rfind(library.prefix, 0) == 0 && !home)
+        found.push_back(at(file, include.line) + "includes " + include.name + "; expected only in " +
+                        *library.homes.begin());
+    }
+  return found;
+}
+
+Violations againstSharedText(const SourceFile& file) {
+  Violations found;
+  const std::vector<std::string> raw = linesOf(file.text), code = linesOf(withoutComments(file.text));
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    if (code[i].find('#') != std::string::npos) {
+      if (!isAllowedDirective(raw[i]))
+        found.push_back(at(file, number) + "a directive other than #pragma once and #include \"shared/...\"");
+      continue;
+    }
+    for (const Pattern& pattern : sharedPatterns())
+      if (std::smatch match; std::regex_search(code[i], match, pattern.found))
+        found.push_back(at(file, number) + "'" + match.str() + "': " + pattern.what);
+  }
+  return found;
+}
+
+Violations roomsWithoutReadme(const std::string& top) {
+  Violations found;
+  const auto isEmpty = [](const std::filesystem::path& folder) {
+    const std::filesystem::recursive_directory_iterator files(folder);
+    return std::none_of(begin(files), end(files), [](const auto& entry) { return entry.is_regular_file(); });
+  };
+  const auto need = [&](const std::filesystem::path& folder) {
+    if (isEmpty(folder)) return;
+    std::error_code failure;
+    const auto size = std::filesystem::file_size(folder / "README.md", failure);
+    if (failure || size == 0) found.push_back((folder / "README.md").string() + ": missing or empty");
+  };
+  need(top);
+  for (const std::string& room : rooms())
+    if (std::filesystem::is_directory(std::filesystem::path(top) / room)) need(std::filesystem::path(top) / room);
+  const std::filesystem::path samples = std::filesystem::path(top) / "samples";
+  if (std::filesystem::is_directory(samples))
+    for (const auto& entry : std::filesystem::directory_iterator(samples))
+      if (entry.is_directory() && entry.path().filename() != "generate") need(entry.path());
+  return found;
+}
+
+}  // namespace pellucid::test

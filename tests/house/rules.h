@@ -1,0 +1,25 @@
+// The rules of the house that a text search can hold. Each returns one sentence per violation.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tests/house/source_text.h"
+
+namespace pellucid::test {
+
+using Violations = std::vector<std::string>;
+
+// The folders that hold code, and the one a file belongs to: "composite/cli" is a room of its own.
+const std::vector<std::string>& rooms();
+std::string roomOf(const std::string& path);
+
+// Includes against the arrows: shaders <- gbuffer <- engine_bridge, composite <- composite/cli <- samples, tests.
+Violations againstArrows(const SourceFile& file);
+// Libraries that only one room may know: GL and EGL, Embree, OpenEXR.
+Violations libraryOutsideItsRoom(const SourceFile& file);
+// What shaders/shared/ must not hold, or one of its two compilers reads it differently.
+Violations againstSharedText(const SourceFile& file);
+// Rooms of the tree below `top` that have no README.md.
+Violations roomsWithoutReadme(const std::string& top);
+
+}  // namespace pellucid::test

@@ -1,0 +1,148 @@
+// The samples are what they say, the same in every run, and the main job runs on each.
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "gbuffer/opaque_io.h"
+#include "tests/support/program.h"
+
+namespace pellucid {
+namespace {
+
+using namespace test;
+
+class Samples : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = freshFolder(std::string("samples-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    options.folder = folder;
+  }
+  // Writes NAME.exr and NAME.glb, of every sample for "", below `to`.
+  Ended generate(const std::string& name, const std::string& to = ".") {
+    RunOptions generator = options;
+    generator.program = "pellucid_samples";
+    std::vector<std::string> arguments = {to};
+    if (!name.empty()) arguments.push_back(name);
+    return runProgram(arguments, generator);
+  }
+  // The error against sorted truth that `composite NAME --measure` reports.
+  nlohmann::json measured(const std::string& name, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"composite",         name + ".exr", name + ".glb", "-o",
+                                          name + "-glass.exr", "--measure",   "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended ended = runProgram(arguments, options);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const nlohmann::json report = nlohmann::json::parse(ended.out, nullptr, false);
+    EXPECT_TRUE(report.is_object() && report.contains("error")) << ended.out;
+    return report.value("error", nlohmann::json::object());
+  }
+  GBuffer read(const std::string& file) { return readOpaque(folder + "/" + file, {}).gbuffer; }
+
+  std::string folder;
+  RunOptions options;
+};
+
+TEST_F(Samples, TwoRunsWriteTheSameBytes) {
+  ASSERT_EQ(generate("", "first").code, 0);
+  // The second run on one core: oneTBB takes as many threads as its process may use cores.
+  cpu_set_t all, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
+  CPU_ZERO(&one);
+  for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++core)
+    if (CPU_ISSET(core, &all)) CPU_SET(core, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+  const Ended second = generate("", "second");
+  ASSERT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
+  ASSERT_EQ(second.code, 0) << second.err;
+
+  const std::vector<std::string> files = filesIn(folder + "/first");
+  ASSERT_GE(files.size(), 6u);
+  ASSERT_EQ(files, filesIn(folder + "/second"));
+  for (const std::string& file : files) {
+    const std::string bytes = slurp(folder + "/first/" + file);
+    std::printf("%s: %zu bytes\n", file.c_str(), bytes.size());
+    EXPECT_GT(bytes.size(), 1000u) << file;
+    EXPECT_TRUE(bytes == slurp(folder + "/second/" + file)) << file;
+  }
+}
+
+TEST_F(Samples, AnUnknownNameIsRefused) {
+  const Ended ended = generate("no-such-sample");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_NE(ended.err.find("no-such-sample"), std::string::npos) << ended.err;
+  EXPECT_TRUE(filesIn(folder).empty());
+}
+
+// The wall behind the bars faces the camera, so its planar depth is one number: 3 m to z = 0, 1.2 m on to the wall.
+TEST_F(Samples, DepthIsPlanar) {
+  ASSERT_EQ(generate("bars").code, 0);
+  const GBuffer bars = read("bars.exr");
+  ASSERT_TRUE(bars.camera.has_value());
+  for (int y = 0; y < bars.viewZ.height(); ++y)
+    for (int x = 0; x < bars.viewZ.width(); ++x) {
+      ASSERT_NEAR(bars.viewZ.at(x, y), 4.2f, 1e-6f) << x << " " << y;  // two roundings to float
+      ASSERT_EQ(bars.normal.at(x, y), glm::vec3(0, 0, 1)) << x << " " << y;
+    }
+}
+
+// Pure filters commute: where nothing reflects, no weight has a say.
+TEST_F(Samples, BarsAreExact) {
+  ASSERT_EQ(generate("bars").code, 0);
+  for (const char* passes : {"1", "4"}) {
+    const nlohmann::json error = measured("bars", {"--aa", passes});
+    std::printf("bars, --aa %s: rmse %.3g, max %.3g\n", passes, error["rmse"].get<double>(),
+                error["max"].get<double>());
+    EXPECT_LE(error["max"].get<double>(), 1e-6);
+    EXPECT_EQ(error["notFinite"].get<int>(), 0);
+  }
+  // The red upright bar alone, over white: one filter times the wall. Pixel (115, 80) lies between the cross bars.
+  const glm::vec4 before = read("bars.exr").beauty.at(115, 80), after = read("bars-glass.exr").beauty.at(115, 80);
+  const glm::vec3 red(0.9f, 0.1f, 0.1f);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(after[c], before[c] * red[c], 1e-3f) << c;  // two roundings to half, 2.5e-4 each below 1
+}
+
+TEST_F(Samples, TheCameraInTheGlbIsTheOneInTheExr) {
+  ASSERT_EQ(generate("bottles").code, 0);
+  measured("bottles", {"--aa", "1"});
+  const GBuffer byAttribute = read("bottles-glass.exr");
+  measured("bottles", {"--aa", "1", "--camera", "cam"});
+  const GBuffer byNode = read("bottles-glass.exr");
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < byNode.beauty.size(); ++i)
+    if (glm::any(glm::greaterThan(glm::abs(byNode.beauty[i] - byAttribute.beauty[i]), glm::vec4(0.01f)))) ++differ;
+  std::printf("%zu of %zu pixels differ by more than 0.01\n", differ, byNode.beauty.size());
+  // The attributes are floats: an edge may fall on the other side of a pixel's centre, about once in ten thousand.
+  EXPECT_LE(differ, byNode.beauty.size() / 2000);
+}
+
+TEST_F(Samples, SortedTruthMeasuresNothingAgainstItself) {
+  ASSERT_EQ(generate("bottles").code, 0);
+  const nlohmann::json error = measured("bottles", {"--aa", "1", "--method", "over"});
+  EXPECT_EQ(error["max"].get<double>(), 0.0);
+}
+
+TEST_F(Samples, TheMainJobRunsOnEach) {
+  for (const std::string name : {"bottles", "smoke"}) {
+    ASSERT_EQ(generate(name).code, 0);
+    const nlohmann::json error = measured(name, {"--aa", "1"});
+    std::printf("%s: mean %.3g, rmse %.3g, max %.3g\n", name.c_str(), error["mean"].get<double>(),
+                error["rmse"].get<double>(), error["max"].get<double>());
+    EXPECT_EQ(error["notFinite"].get<int>(), 0);
+    EXPECT_GT(error["rmse"].get<double>(), 0.0);  // layers that reflect: no weighted method is exact here
+    const GBuffer before = read(name + ".exr"), after = read(name + "-glass.exr");
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < before.beauty.size(); ++i)
+      if (before.beauty[i] != after.beauty[i]) ++changed;
+    std::printf("%s: %.0f%% of the pixels changed\n", name.c_str(),
+                100.0 * static_cast<double>(changed) / static_cast<double>(before.beauty.size()));
+    EXPECT_GT(changed, before.beauty.size() / 10);
+    EXPECT_LT(changed, before.beauty.size());
+    for (const std::string& file : filesIn(folder)) EXPECT_EQ(file.find(".tmp"), std::string::npos) << file;
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
