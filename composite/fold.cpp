@@ -8,7 +8,6 @@
 #include "composite/denormals.h"
 
 namespace pellucid {
-namespace {
 
 shading::Layer layerFrom(const Fragment& fragment) {
   shading::Layer layer;
@@ -26,7 +25,7 @@ shading::Scatter scatterFrom(const Fragment& fragment) {
   return scatter;
 }
 
-bool scatters(const FragmentLists& lists) {
+bool anyScatters(const FragmentLists& lists) {
   return std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
     return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
   });
@@ -35,6 +34,14 @@ bool scatters(const FragmentLists& lists) {
 bool takesPart(const Fragment& fragment, const glm::vec4& solid) {
   return !(fragment.z > solid.a) && !shading::isSolid(fragment.coverage, fragment.transmission);
 }
+
+void copySolids(const FragmentLists& lists, OitPlanes& planes) {
+  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
+  for (int y = 0; y < lists.window.height(); ++y)
+    std::copy(lists.solid.row(y), lists.solid.row(y) + lists.window.width(), &planes.solid.at(left, top + y));
+}
+
+namespace {
 
 void foldScatterPixel(const FragmentLists& lists, std::size_t pixel, const glm::vec4& solid, int px, int py,
                       OitPlanes& planes) {
@@ -56,11 +63,10 @@ void foldScatterPixel(const FragmentLists& lists, std::size_t pixel, const glm::
 }  // namespace
 
 void foldScattering(const FragmentLists& lists, OitPlanes& planes) {
-  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
-  for (int y = 0; y < lists.window.height(); ++y)
-    std::copy(lists.solid.row(y), lists.solid.row(y) + lists.window.width(), &planes.solid.at(left, top + y));
-  if (!scatters(lists)) return;
+  copySolids(lists, planes);
+  if (!anyScatters(lists)) return;
   addScatterPlanes(planes);
+  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;
     for (int y = rows.begin(); y != rows.end(); ++y)

@@ -14,4 +14,11 @@ void foldFragments(const FragmentLists& lists, const shading::WeightSettings& we
 // solid plane. Planes stay without refraction when no fragment refracts or diffuses. foldFragments() does it too.
 void foldScattering(const FragmentLists& lists, OitPlanes& planes);
 
+// What folds share. A fragment takes part unless it is solid or lies behind the solid.
+shading::Layer layerFrom(const Fragment& fragment);
+shading::Scatter scatterFrom(const Fragment& fragment);
+bool takesPart(const Fragment& fragment, const glm::vec4& solid);
+bool anyScatters(const FragmentLists& lists);
+void copySolids(const FragmentLists& lists, OitPlanes& planes);
+
 }  // namespace pellucid

@@ -18,6 +18,7 @@ constexpr int kFilter = 2;             // the filter spans five pixels: each tur
 constexpr double kMostPixels = 256;    // a radius beyond this is cut: nearer things decide
 constexpr double kSameSurface = 0.02;  // of the depth: how far neighbours of one surface may differ per pixel
 constexpr double kOwnPlane = 0.03;     // sine of the elevation up to which a tap is the surface itself
+constexpr double kSameFit = 1e-5;      // of the depth
 constexpr float kFar = 1e30f;
 
 class Horizons {
@@ -100,12 +101,13 @@ class Horizons {
 
   glm::dvec3 slope(int x, int y, int dx, int dy, const glm::dvec3& here) const {
     const double before = misfit(x, y, -dx, -dy), after = misfit(x, y, dx, dy);
-    if (before < after) return here - point(x - dx, y - dy);
+    // Both sides of a plane fit but for the last bits of float depth, which are no reason to change sides.
+    if (before + kSameFit < after) return here - point(x - dx, y - dy);
     return std::isfinite(after) ? point(x + dx, y + dy) - here : glm::dvec3(0.0);
   }
 
-  // How far the pixel lies from the surface that its next two neighbours one way span; on a plane 1/z is linear in
-  // pixels. Of one neighbour alone, how far that one lies; infinite without any.
+  // How far, relative to its depth, the pixel lies from the surface that its next two neighbours one way span; on a
+  // plane 1/z is linear in pixels. Of one neighbour alone, how far that one lies; infinite without any.
   double misfit(int x, int y, int dx, int dy) const {
     if (!hit(x + dx, y + dy)) return std::numeric_limits<double>::infinity();
     const auto inverse = [&](int k) {
@@ -113,7 +115,7 @@ class Horizons {
       return orthographic_ ? z : 1.0 / z;
     };
     const double near1 = inverse(1), near2 = hit(x + 2 * dx, y + 2 * dy) ? inverse(2) : near1;
-    return std::abs(inverse(0) - (2.0 * near1 - near2));
+    return std::abs(1.0 - (2.0 * near1 - near2) / inverse(0));
   }
 
   // Angle from the eye's direction to the highest thing one way, radians; pi where nothing is.

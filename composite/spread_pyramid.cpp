@@ -17,6 +17,10 @@ constexpr int kMargin = 2;
 constexpr float kMask[4] = {0.125f, 0.375f, 0.375f, 0.125f};
 // A tap with this part of the kernel's variance, or more, leaves out less than 0.3% of it.
 constexpr float kTail = 0.75f;
+// Taps below this part of the centre's weight, 3% of the kernel in all, are not taken apart.
+constexpr float kFaint = 0.03f;
+// And those above this part, where parts are few pixels wide, are taken apart down to the pixel.
+constexpr float kNear = 0.3f;
 // How far the parts that the mask adds lie from the texel's centre, in texels.
 constexpr float kParts = 0.75f;
 // Texels in a standard deviation, at least. Measured in tests/scatter/diffusion_test.cpp.
@@ -121,7 +125,8 @@ SpreadPyramid::Part SpreadPyramid::passing(const Texel& texel, float needed, flo
   return part;
 }
 
-SpreadPyramid::Part SpreadPyramid::passingParts(int number, int x, int y, glm::vec2 centre, float rateLimit) const {
+SpreadPyramid::Part SpreadPyramid::passingParts(int number, int x, int y, glm::vec2 centre, float rateLimit,
+                                                bool deeper) const {
   const float edge = 0.5f * static_cast<float>(1 << number);
   Part sum{glm::vec4(0.0f), 0.0f};
   for (int j = 0; j < 4; ++j)
@@ -132,10 +137,10 @@ SpreadPyramid::Part SpreadPyramid::passingParts(int number, int x, int y, glm::v
       const float dx = (static_cast<float>(px) + 0.5f) * edge - centre.x;
       const float dy = (static_cast<float>(py) + 0.5f) * edge - centre.y;
       const float needed = (dx * dx + dy * dy) / kReach2;
-      // Where parts are few pixels wide, half a part is seen: they are asked down to the pixel.
-      const bool mixed = texel.variance.least < texel.variance.most && texel.variance.least < 4.0f * needed;
-      const Part part =
-          number == 2 && mixed ? passingParts(1, px, py, centre, rateLimit) : passing(texel, needed, rateLimit);
+      const bool spreads = texel.variance.least < texel.variance.most && texel.variance.least < 4.0f * needed;
+      const bool mixed = spreads || (rateLimit >= texel.rate.least && rateLimit < texel.rate.most);
+      const Part part = deeper && mixed ? passingParts(number - 1, px, py, centre, rateLimit, number == 3)
+                                        : passing(texel, needed, rateLimit);
       const float share = kMask[i] * kMask[j];
       sum.colour += share * part.colour;
       sum.mass += share * part.mass;
@@ -175,8 +180,7 @@ Gathered SpreadPyramid::gather(glm::vec2 centre, float spread, float scattererZ)
       if (r2 > kReach2 * variance) continue;
       const Texel& texel = level.clamped(x, y);
       if (texel.mass <= 0.0f) continue;
-      // A pixel counts when its own variance is at least r^2 / kappa^2. The texel's parts lie up to kParts away from
-      // it.
+      // A pixel counts when its own variance is at least r^2 / kappa^2; the texel's parts lie up to kParts away.
       const float nearX = std::max(std::abs(dx) - kParts, 0.0f), nearY = std::max(std::abs(dy) - kParts, 0.0f);
       const float farX = std::abs(dx) + kParts, farY = std::abs(dy) + kParts;
       const float least = (nearX * nearX + nearY * nearY) * (edge * edge) / kReach2;
@@ -186,7 +190,10 @@ Gathered SpreadPyramid::gather(glm::vec2 centre, float spread, float scattererZ)
       if (least > texel.variance.most || rateLimit < texel.rate.least) continue;
       // Where the tap's own spread ends the kernel before its tail, the end must lie at its place.
       const bool cuts = most > texel.variance.least && texel.variance.least < kTail * spread * spread;
-      if (cuts || rateLimit < texel.rate.most) part = passingParts(number, x, y, centre, rateLimit);
+      if (cuts || rateLimit < texel.rate.most)
+        part = weight * down < kFaint ? passing(texel, r2 * (edge * edge) / kReach2, rateLimit)
+                                      : passingParts(number, x, y, centre, rateLimit,
+                                                     number == 2 || (number == 3 && weight * down > kNear));
       rowColour += weight * part.colour;
       rowWeight += weight * part.mass;
     }

@@ -51,7 +51,8 @@ class SpreadPyramid {
   static Part passing(const Texel& texel, float needed, float rateLimit);
   // The same of a texel of level `number` on which pixels differ: its parts are asked one by one, at their own
   // distance.
-  Part passingParts(int number, int x, int y, glm::vec2 centre, float rateLimit) const;
+  //   deeper  parts on which pixels differ are asked by theirs
+  Part passingParts(int number, int x, int y, glm::vec2 centre, float rateLimit, bool deeper) const;
   Texel pixel(int x, int y) const;
   Texel texelAt(int number, int x, int y) const;
   // Texels lie from -kMargin: beyond, a clamped picture repeats them exactly.

@@ -7,6 +7,8 @@
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
+#include "composite/fold_exact.h"
+#include "engine_bridge/gl/solid_hash.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/planes_io.h"
 
@@ -23,6 +25,19 @@ struct AccumulateFlags {
   RunFlags run;
 };
 
+// The `exact` tier: fragment lists, folded in an order of their own.
+OitPlanes exactPlanes(TransparentPass& pass, const PassSettings& settings, const Shot& shot) {
+  OitPlanes planes = emptyPlanes(shot.opaque.gbuffer.display, shot.opaque.gbuffer.data);
+  planes.camera = shot.camera;
+  planes.info.weight = settings.weight;
+  planes.info.normalisation = settings.normalisation;
+  planes.info.tier = "exact";
+  pass.fragments(settings,
+                 [&](const FragmentLists& tile) { foldExact(tile, settings.weight, settings.normalisation, planes); });
+  planes.info.solidHash = gl::solidHash(planes.solid);
+  return planes;
+}
+
 void accumulate(const AccumulateFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
@@ -37,7 +52,9 @@ void accumulate(const AccumulateFlags& flags) {
   flags.scatter.applyTo(settings);
   GlContext context(flags.scene.device);
   TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
-  const OitPlanes planes = stages.time("transparent pass", [&] { return pass.accumulate(settings); });
+  const OitPlanes planes = stages.time("transparent pass", [&] {
+    return flags.method.isExact() ? exactPlanes(pass, settings, *shot) : pass.accumulate(settings);
+  });
   stages.time("write", [&] { writePlanes(flags.output, planes); });
   const PassStatistics& statistics = pass.statistics();
   nlohmann::json report{{"output", flags.output}};

@@ -48,6 +48,7 @@ void composite(const CompositeFlags& flags) {
   settings.sortedTruth = flags.method.isOver();
   settings.listMethod = flags.method.listMethod();
   settings.tolerance = flags.tolerance;
+  settings.exactSums = flags.method.isExact();
   settings.resolve.selfModulation = flags.selfModulation;
   settings.pass.surroundings = shot->surroundings;
   flags.scene.applyTo(settings.pass);

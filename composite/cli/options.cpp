@@ -149,7 +149,10 @@ void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
         return fmt::format("--method: found '{}', expected {}", text, names);
       })
       ->capture_default_str();
-  verb.add_option("--precision", precision)->check(CLI::IsMember({"float"}))->capture_default_str();
+  verb.add_option("--precision", precision)
+      ->check(CLI::IsMember({"float", "exact"}))
+      ->capture_default_str()
+      ->description("exact: the same bits for every order, chunk, tile and thread count");
   addWeightTo(verb, listsToo);
 }
 
@@ -169,6 +172,9 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
 
 std::optional<ChosenMethod> MethodFlags::listMethod() const {
   const std::optional<ChosenMethod> chosen = chooseMethod(method);
+  if (chosen && isExact())
+    throw UsageError(
+        fmt::format("--precision: found exact with --method {}, expected phenomenological or over", method));
   if (!chosen || chosen->method->weighs) return chosen;
   for (const CLI::Option* option : {weightOption, normalisationOption})
     if (option && option->count() > 0)

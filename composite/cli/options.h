@@ -39,6 +39,7 @@ struct MethodFlags {
   void addWeightTo(CLI::App& verb, bool takesAuto);  // --normalisation, --weight, --weight-range alone
   bool isAuto() const { return weight == "auto"; }   // then the weight is to be fitted, see fitShotWeight
   bool isOver() const { return method == "over"; }
+  bool isExact() const { return precision == "exact"; }
   // A method of the table that works from fragment lists. Throws UsageError for a flag that it cannot honour.
   std::optional<ChosenMethod> listMethod() const;
   const CLI::Option *weightOption = nullptr, *normalisationOption = nullptr;

@@ -3,6 +3,7 @@
 #include "composite/antialias.h"
 #include "composite/cli/lists.h"
 #include "composite/fold.h"
+#include "composite/fold_exact.h"
 #include "composite/over.h"
 #include "composite/study/fit_weight.h"
 
@@ -27,7 +28,11 @@ Veil veilFromLists(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource
              if (!pass) counts.fragments += given.fragments.size();
              FragmentLists shown;
              if (scatters) {
-               foldScattering(given, planes);
+               // The truth depends on no order either.
+               if (settings.sortedTruth || settings.exactSums)
+                 foldExact(given, sample.weight, sample.normalisation, planes);
+               else
+                 foldScattering(given, planes);
                shown = given;
                hideSolids(shown);
              }
@@ -38,6 +43,8 @@ Veil veilFromLists(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource
                compositeSorted(tile, gbuffer.data, veil);
              else if (settings.listMethod)
                compositeBy(*settings.listMethod, choice, tile, gbuffer.data, veil);
+             else if (settings.exactSums)
+               foldExact(tile, sample.weight, sample.normalisation, planes);
              else
                foldFragments(tile, sample.weight, sample.normalisation, planes);
            });
@@ -57,7 +64,8 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
   for (int i = 0; i < settings.samples; ++i) {
     PassSettings sample = settings.pass;
     sample.sample = samplePosition(i, settings.samples);
-    if (settings.sortedTruth || settings.listMethod || settings.tolerance || !deep.empty() || !pass) {
+    if (settings.sortedTruth || settings.listMethod || settings.tolerance || settings.exactSums || !deep.empty() ||
+        !pass) {
       const Veil veil = stages.time(settings.sortedTruth ? "lists and sort" : "lists and method",
                                     [&] { return veilFromLists(pass, deep, settings, sample, gbuffer, counts); });
       stages.time("average", [&] { mean.add(veil); });

@@ -12,6 +12,7 @@ struct RenderSettings {
   PassSettings pass;
   ResolveSettings resolve;
   LookupSettings lookup;
+  bool exactSums = false;                  // --precision exact
   bool sortedTruth = false;                // `over`
   int samples = 1;                         // --aa
   std::optional<ChosenMethod> listMethod;  // a method that works from fragment lists; nothing: the GL pass's sums

@@ -70,7 +70,6 @@ Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& cam
       for (int r = 0; r < 3; ++r) largest = std::max(largest, std::abs(normal[c][r]));
     if (largest > 0) normal *= (volume < 0 ? -1.0 : 1.0) / largest;
     drawable.normal = glm::mat3(normal);
-    drawable.mirrored = volume < 0;
     drawable.thicknessScale = static_cast<float>(std::cbrt(std::abs(volume)));
     drawables_.push_back(drawable);
   }
@@ -172,6 +171,7 @@ void Renderer::begin(const Window& superTile, const PassSettings& settings, std:
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDisable(GL_DEPTH_TEST);
   glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);  // as placed: the loader turns the windings of instances that mirror
   glBindTextureUnit(5, opaqueZ_.name());
   glBindSampler(5, 0);
   glBindSampler(6, 0);
@@ -238,7 +238,6 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
       glDisable(GL_CULL_FACE);
     else
       glEnable(GL_CULL_FACE);
-    glFrontFace(drawable.mirrored ? GL_CW : GL_CCW);
     glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &drawable.position[0][0]);
     glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &drawable.normal[0][0]);
     glUniform1f(program->thicknessScale, drawable.thicknessScale);

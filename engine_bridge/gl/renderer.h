@@ -46,7 +46,6 @@ class Renderer {
     glm::mat4 position;
     glm::mat3 normal;
     float thicknessScale;
-    bool mirrored;
   };
   struct Shader {  // per primitive
     std::vector<std::string> surface;

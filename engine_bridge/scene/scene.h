@@ -70,7 +70,7 @@ struct Material {
 
 struct Primitive {
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;  // triangles
+  std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from the front *as placed* by their instances
   int material = 0;                    // index into Scene::materials
 };
 

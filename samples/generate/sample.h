@@ -19,12 +19,14 @@ Sample bars();
 Sample bottles();
 Sample smoke();
 Sample foliage();
+Sample frosted();
+Sample ball();
 
 struct Entry {
   const char* name;
   Sample (*make)();
 };
-inline const std::vector<Entry> kSamples = {
-    {"bars", bars}, {"bottles", bottles}, {"smoke", smoke}, {"foliage", foliage}};
+inline const std::vector<Entry> kSamples = {{"bars", bars},       {"bottles", bottles}, {"smoke", smoke},
+                                            {"foliage", foliage}, {"frosted", frosted}, {"ball", ball}};
 
 }  // namespace pellucid::samples

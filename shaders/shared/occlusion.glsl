@@ -1,6 +1,7 @@
 #pragma once
 // Ambient occlusion at the partly covered rim of a cut-out surface, from its opaque neighbours. MODEL section 10;
-// PT17 section 6 and listing 2. The caller fetches: for tap in 0..taps { pixel = occlusionPixel(...); sum += occlusionTap(...) }.
+// PT17 section 6 and listing 2. The caller fetches: for each tap, the neighbour's depth and occlusion at
+// occlusionPixel, summed by occlusionTap, and in the end occlusionFrom.
 
 const int PLD_OCCLUSION_RELATIVE = 0;   // depth compared relative to z, sky weighs nothing, no neighbour means open
 const int PLD_OCCLUSION_PUBLISHED = 1;  // listing 2 as printed: 0.01 m, the pixel itself first, black where nothing weighs

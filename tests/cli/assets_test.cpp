@@ -20,7 +20,7 @@ using namespace test;
 
 Image<glm::vec4> anyBeauty(const std::string& path) {
   // The truths have no depth: read them through the raw document.
-  const ExrDocument document = readDocument(path);
+  const ExrDocument document = readExr(path);
   Image<glm::vec4> image(document.parts[0].data.width(), document.parts[0].data.height(), glm::vec4(0));
   for (const ExrChannel& channel : document.parts[0].channels) {
     const std::string suffix = channel.name.substr(channel.name.rfind('.') + 1);
@@ -64,7 +64,7 @@ TEST(Assets, RealCaseKeepsEveryOtherLayer) {
   const Ended ended =
       runProgram({"composite", blender + "/gbuffer.exr", blender + "/transparent_lit.glb", "-o", folder + "/out.exr"});
   ASSERT_EQ(ended.code, 0) << ended.err;
-  const ExrDocument before = readDocument(blender + "/gbuffer.exr"), after = readDocument(folder + "/out.exr");
+  const ExrDocument before = readExr(blender + "/gbuffer.exr"), after = readExr(folder + "/out.exr");
   ASSERT_EQ(before.parts.size(), after.parts.size());
   std::size_t channels = 0;
   for (std::size_t p = 0; p < before.parts.size(); ++p)

@@ -92,9 +92,11 @@ TEST(Coverage, BackFacesAreCulledUnlessDoubleSided) {
         Material material = unlitBlend(kRed, 0.5f);
         material.doubleSided = doubleSided;
         Instance& instance = stage.quad(2, 2, 14, 14, 2.0, stage.add(material));
-        if (back) std::swap(stage.scene.primitives[0].indices[1], stage.scene.primitives[0].indices[2]);
-        if (back) std::swap(stage.scene.primitives[0].indices[4], stage.scene.primitives[0].indices[5]);
-        // A mirror flips the winding on screen, and by the specification what counts as front with it.
+        // A mirror turns the sides round; the loader turns the windings with it.
+        if (back != mirrored) {
+          std::swap(stage.scene.primitives[0].indices[1], stage.scene.primitives[0].indices[2]);
+          std::swap(stage.scene.primitives[0].indices[4], stage.scene.primitives[0].indices[5]);
+        }
         if (mirrored) instance.worldFromObject[0][0] = -1.0;
         EXPECT_EQ(touched(stage.accumulate()), back && !doubleSided ? 0 : 12 * 12) << mirrored << doubleSided << back;
       }

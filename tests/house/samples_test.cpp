@@ -19,12 +19,12 @@ class Samples : public ::testing::Test {
     folder = freshFolder(std::string("samples-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     options.folder = folder;
   }
-  // Writes NAME.exr and NAME.glb, of every sample for "", below `to`.
-  Ended generate(const std::string& name, const std::string& to = ".") {
+  // Writes NAME.exr and NAME.glb below `to`.
+  Ended generate(const std::string& name, const std::string& to = ".", const std::vector<std::string>& more = {}) {
     RunOptions generator = options;
     generator.program = "pellucid_samples";
-    std::vector<std::string> arguments = {to};
-    if (!name.empty()) arguments.push_back(name);
+    std::vector<std::string> arguments = {to, name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(arguments, generator);
   }
   // The error against sorted truth that `composite NAME --measure` reports.
@@ -45,7 +45,7 @@ class Samples : public ::testing::Test {
 };
 
 TEST_F(Samples, TwoRunsWriteTheSameBytes) {
-  ASSERT_EQ(generate("", "first").code, 0);
+  ASSERT_EQ(generate("all", "first", {"180"}).code, 0);
   // The second run on one core: oneTBB takes as many threads as its process may use cores.
   cpu_set_t all, one;
   ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
@@ -53,7 +53,7 @@ TEST_F(Samples, TwoRunsWriteTheSameBytes) {
   for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++core)
     if (CPU_ISSET(core, &all)) CPU_SET(core, &one);
   ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
-  const Ended second = generate("", "second");
+  const Ended second = generate("all", "second", {"180"});
   ASSERT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
   ASSERT_EQ(second.code, 0) << second.err;
 
@@ -73,6 +73,19 @@ TEST_F(Samples, AnUnknownNameIsRefused) {
   EXPECT_EQ(ended.code, 2);
   EXPECT_NE(ended.err.find("no-such-sample"), std::string::npos) << ended.err;
   EXPECT_TRUE(filesIn(folder).empty());
+}
+
+TEST_F(Samples, AnUnfitHeightIsRefused) {
+  for (const char* height : {"0", "-9", "9999999999", "90x", "", "100"}) {
+    const Ended ended = generate("bars", ".", {height});
+    EXPECT_EQ(ended.code, 2) << height;
+    EXPECT_NE(ended.err.find("HEIGHT"), std::string::npos) << ended.err;
+  }
+  EXPECT_TRUE(filesIn(folder).empty());
+  ASSERT_EQ(generate("bars", ".", {"90"}).code, 0);
+  const GBuffer small = read("bars.exr");
+  EXPECT_EQ(small.beauty.width(), 160);
+  EXPECT_EQ(small.beauty.height(), 90);
 }
 
 // The wall behind the bars faces the camera, so its planar depth is one number: 3 m to z = 0, 1.2 m on to the wall.

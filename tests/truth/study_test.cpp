@@ -7,6 +7,7 @@
 #include "composite/over.h"
 #include "composite/study/fit_weight.h"
 #include "composite/study/study.h"
+#include "gbuffer/accum.h"
 #include "tests/support/exr_shots.h"
 #include "tests/support/layers.h"
 #include "tests/support/program.h"

@@ -1,0 +1,14 @@
+// Sums that no order changes: the `exact` tier.
+#pragma once
+#include "gbuffer/accum.h"
+#include "gbuffer/fragments.h"
+
+namespace pellucid {
+
+// As foldFragments(), but each pixel's terms are added in an order that all bits of the fragments decide, in long
+// double, and rounded once. The lists must hold every fragment of their pixels: sums already in the planes are
+// replaced. Bits are the same for every order of the lists; each plane lies within a rounding of float of the true sum
+// of its terms.
+void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation, OitPlanes& planes);
+
+}  // namespace pellucid

@@ -1,0 +1,91 @@
+// Refraction, diffusion and precision as a user asks for them.
+#include <gtest/gtest.h>
+
+#include "gbuffer/exr_document.h"
+#include "tests/support/exr_shots.h"
+#include "tests/support/program.h"
+#include "tests/support/shots.h"
+
+namespace pellucid::test {
+namespace {
+
+struct Shot {
+  std::string folder = freshFolder("scatter-program");
+  std::string opaque = folder + "/opaque.exr", glass = folder + "/glass.glb";
+  Shot() {
+    writeOpaque(opaque);
+    Quad frosted;
+    frosted.material = {{"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.5}}},
+                        {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}};
+    Quad smoke;
+    smoke.corner = {-0.5f, -0.5f, -2.0f};
+    smoke.across = {1.0f, 0.0f, -0.5f};
+    smoke.up = {0.0f, 1.0f, 0.0f};
+    smoke.material = unlit(0.4f, 0.5f, 0.6f, 0.3f);
+    writeGlb(glass, {frosted, smoke, smoke});
+  }
+  Ended composite(const std::string& out, std::vector<std::string> flags) const {
+    std::vector<std::string> arguments{"composite", opaque, glass, "-o", folder + "/" + out, "--aa", "2"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    return runProgram(arguments);
+  }
+};
+
+TEST(ScatterProgram, FlagsThatCannotBeHonouredAreUsageErrors) {
+  const Shot shot;
+  const std::vector<std::vector<std::string>> wrong = {{"--refract", "sideways"},
+                                                       {"--refract", "fixed:-1"},
+                                                       {"--refract", "fixed:"},
+                                                       {"--diffusion-scale", "0.3"},
+                                                       {"--diffusion-scale", "0:1"},
+                                                       {"--diffusion-kernel", "disc", "--gather", "exact"},
+                                                       {"--precision", "exact", "--method", "weighted"}};
+  for (const auto& flags : wrong) {
+    const Ended ended = shot.composite("wrong.exr", flags);
+    EXPECT_EQ(ended.code, 2) << flags[1] << '\n' << ended.err;
+    EXPECT_NE(ended.err.find("expected"), std::string::npos) << ended.err;
+  }
+}
+
+TEST(ScatterProgram, ExactGivesTheSameFileForEveryOrderBudgetAndThreadCount) {
+  const Shot shot;
+  ASSERT_EQ(shot.composite("a.exr", {"--precision", "exact"}).code, 0);
+  ASSERT_EQ(shot.composite("b.exr", {"--precision", "exact", "--order", "reverse", "--threads", "1"}).code, 0);
+  ASSERT_EQ(shot.composite("c.exr", {"--precision", "exact", "--order", "shuffle:5", "--budget", "64K"}).code, 0);
+  const std::string a = slurp(shot.folder + "/a.exr");
+  EXPECT_TRUE(a == slurp(shot.folder + "/b.exr"));
+  EXPECT_TRUE(a == slurp(shot.folder + "/c.exr"));
+}
+
+TEST(ScatterProgram, PruningIsReportedAndChangesNoBit) {
+  const Shot shot;
+  const Ended pruned = shot.composite("pruned.exr", {"--stats"}), full = shot.composite("full.exr", {"--no-prune"});
+  ASSERT_EQ(pruned.code, 0) << pruned.err;
+  ASSERT_EQ(full.code, 0) << full.err;
+  EXPECT_TRUE(slurp(shot.folder + "/pruned.exr") == slurp(shot.folder + "/full.exr"));
+  EXPECT_NE(pruned.out.find("bits per pixel"), std::string::npos) << pruned.out;
+  EXPECT_NE(pruned.out.find("refraction: no material transmits through a volume"), std::string::npos) << pruned.out;
+}
+
+// Planes written, read and resolved give the picture of one run; the debug planes are those of the pass.
+TEST(ScatterProgram, AccumulateThenResolveIsComposite) {
+  const Shot shot;
+  const std::string planes = shot.folder + "/planes.exr", resolved = shot.folder + "/resolved.exr";
+  ASSERT_EQ(runProgram({"accumulate", shot.opaque, shot.glass, "-o", planes}).code, 0);
+  const Ended ended = runProgram({"resolve", shot.opaque, planes, "-o", resolved, "--layers", "D,delta,weight,count"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Ended one = runProgram({"composite", shot.opaque, shot.glass, "-o", shot.folder + "/one.exr", "--aa", "1",
+                                "--layers", "D,delta,weight,count"});
+  ASSERT_EQ(one.code, 0) << one.err;
+  const ExrDocument a = readExr(resolved), b = readExr(shot.folder + "/one.exr");
+  ASSERT_EQ(a.parts[0].channels.size(), b.parts[0].channels.size());
+  EXPECT_TRUE(a.parts[0].find("oit.D") && a.parts[0].find("oit.delta.X") && a.parts[0].find("oit.count"));
+  for (const ExrChannel& channel : a.parts[0].channels) {
+    const ExrChannel* other = b.parts[0].find(channel.name);
+    ASSERT_TRUE(other) << channel.name;
+    EXPECT_TRUE(channel.bytes == other->bytes) << channel.name;
+  }
+}
+
+}  // namespace
+}  // namespace pellucid::test
