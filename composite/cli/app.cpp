@@ -41,7 +41,7 @@ int run(int argc, const char* const* argv) {
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "pellucid: %s (see pellucid --help)\n", error.what());
+    std::fprintf(stderr, "pellucid: error: %s (see pellucid --help)\n", error.what());
     return 2;
   } catch (const Error& error) {
     std::fprintf(stderr, "pellucid: error: %s\n", error.what());
