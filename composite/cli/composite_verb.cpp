@@ -16,7 +16,7 @@
 namespace pellucid::cli {
 namespace {
 
-// Eight samples: on the shipped samples their error against 64 is below what a display shows, at half the cost of 16.
+// Of the sample `bottles`, 99.7% of the pixels lie within .02 of 64 samples; 16 bring that to 99.9% at twice the time.
 constexpr int kDefaultSamples = 8;
 
 struct CompositeFlags {
