@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -59,7 +61,10 @@ Ended runProgram(const std::vector<std::string>& arguments, const RunOptions& op
 }
 
 std::string freshFolder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(PELLUCID_BINARY_DIR) / "test-files" / name;
+  // Named after the test too: tests run side by side.
+  const ::testing::TestInfo* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  const std::string own = test ? std::string("-") + test->test_suite_name() + "." + test->name() : "";
+  const std::filesystem::path folder = std::filesystem::path(PELLUCID_BINARY_DIR) / "test-files" / (name + own);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder.string();

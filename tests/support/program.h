@@ -22,7 +22,7 @@ struct RunOptions {
 // `build/bin/PROGRAM ARGS...`
 Ended runProgram(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
-std::string freshFolder(const std::string& name);  // empty, below the build folder
+std::string freshFolder(const std::string& name);  // empty, below the build folder, one per test
 std::string slurp(const std::string& path);
 std::vector<std::string> filesIn(const std::string& folder);
 std::string assets();  // ../shared/assets, or "" when absent
