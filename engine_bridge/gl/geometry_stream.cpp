@@ -136,22 +136,6 @@ GeometryStream::Slot GeometryStream::makeSlot() const {
   slot.indices = Buffer::make();
   slot.triangleNumbers = Buffer::make();
   slot.array = VertexArray::make();
-  const GLuint array = slot.array.name();
-  glVertexArrayVertexBuffer(array, 0, slot.vertices.name(), 0, sizeof(Vertex));
-  glVertexArrayElementBuffer(array, slot.indices.name());
-  const struct {
-    GLint components;
-    std::size_t offset;
-  } attributes[] = {{3, offsetof(Vertex, position)},
-                    {3, offsetof(Vertex, normal)},
-                    {4, offsetof(Vertex, uv)},
-                    {4, offsetof(Vertex, colour)}};
-  for (GLuint i = 0; i < 4; ++i) {
-    glEnableVertexArrayAttrib(array, i);
-    glVertexArrayAttribFormat(array, i, attributes[i].components, GL_FLOAT, GL_FALSE,
-                              static_cast<GLuint>(attributes[i].offset));
-    glVertexArrayAttribBinding(array, i, 0);
-  }
   checkGl("preparing the geometry stream");
   return slot;
 }

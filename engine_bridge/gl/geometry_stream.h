@@ -56,7 +56,7 @@ class GeometryStream {
  public:
   explicit GeometryStream(const Scene& scene);
 
-  // Calls `draw` for each chunk in submission order, with its vertex array bound, and the same buffers as storage
+  // Calls `draw` for each chunk in submission order, with an empty vertex array bound, and its buffers as storage
   // blocks 2 (triangle numbers), 5 (vertices) and 6 (indices). Chunks already resident from the last sweep with the
   // same arguments are not uploaded again.
   void sweep(SubmissionOrder order, std::size_t budgetBytes,
@@ -67,7 +67,7 @@ class GeometryStream {
  private:
   struct Slot {
     Buffer vertices, indices, triangleNumbers;
-    VertexArray array;
+    VertexArray array;  // empty: the stages pull their vertices
     std::vector<ChunkDraw> draws;
   };
   Slot makeSlot() const;

@@ -1,7 +1,6 @@
 #include "engine_bridge/gl/renderer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -13,11 +12,6 @@ namespace {
 
 constexpr const char* kVertexStage = "gl/transparent.vert";
 constexpr const char* kFragmentStage = "gl/transparent.frag";
-
-// Carries normals; unlike the inverse transpose it stands a flattened (singular) matrix.
-glm::dmat3 cofactors(const glm::dmat3& m) {
-  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
 
 template <class T>
 void fillStorage(const Buffer& buffer, const std::vector<T>& values) {
@@ -36,7 +30,12 @@ void requireMatch(const GBuffer& gbuffer) {
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
-    : scene_(scene), gbuffer_(gbuffer), camera_(camera), textures_(scene), stream_(scene) {
+    : scene_(scene),
+      gbuffer_(gbuffer),
+      camera_(camera),
+      textures_(scene),
+      stream_(scene),
+      placed_(placeInstances(scene, camera)) {
   requireMatch(gbuffer);
   frameBuffer_ = Buffer::make();
   materialBuffer_ = Buffer::make();
@@ -57,31 +56,15 @@ Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& cam
   }
   fillStorage(materialBuffer_, materials);
 
-  drawables_.reserve(scene.instances.size());
-  for (const Instance& instance : scene.instances) {
-    Drawable drawable;
-    drawable.viewFromObject = camera.viewFromWorld * instance.worldFromObject;
-    drawable.position = glm::mat4(drawable.viewFromObject);
-    const glm::dmat3 linear(drawable.viewFromObject);
-    const double volume = glm::determinant(linear);
-    glm::dmat3 normal = cofactors(linear);
-    double largest = 0;
-    for (int c = 0; c < 3; ++c)
-      for (int r = 0; r < 3; ++r) largest = std::max(largest, std::abs(normal[c][r]));
-    if (largest > 0) normal *= (volume < 0 ? -1.0 : 1.0) / largest;
-    drawable.normal = glm::mat3(normal);
-    drawable.thicknessScale = static_cast<float>(std::cbrt(std::abs(volume)));
-    drawables_.push_back(drawable);
-  }
   classify();
   checkGl("preparing the transparent pass");
 }
 
 void Renderer::classify() {
   std::vector<float> largestScale(scene_.primitives.size(), -1.0f);
-  for (std::size_t i = 0; i < drawables_.size(); ++i) {
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
     float& scale = largestScale[static_cast<std::size_t>(scene_.instances[i].primitive)];
-    scale = std::max(scale, drawables_[i].thicknessScale);
+    scale = std::max(scale, placed_[i].thicknessScale);
   }
   for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
     const Primitive& primitive = scene_.primitives[i];
@@ -223,7 +206,8 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(instance.primitive)];
     if (output == Output::solid && !shaders_[static_cast<std::size_t>(instance.primitive)].canBeSolid) continue;
     const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
-    const Drawable& drawable = drawables_[one.instance];
+    const Placed& placed = placed_[one.instance];
+    const glm::mat4 viewFromObject(placed.viewFromObject);
     const Program& wanted = programFor(instance.primitive, output);
     if (&wanted != program) glUseProgram(wanted.name.name());
     program = &wanted;
@@ -238,9 +222,9 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
       glDisable(GL_CULL_FACE);
     else
       glEnable(GL_CULL_FACE);
-    glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &drawable.position[0][0]);
-    glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &drawable.normal[0][0]);
-    glUniform1f(program->thicknessScale, drawable.thicknessScale);
+    glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
+    glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
+    glUniform1f(program->thicknessScale, placed.thicknessScale);
     glUniform1ui(program->instanceIdentity, instance.identity);
     const auto corners = static_cast<GLsizei>(one.triangles * 3);
     // The stage pulls its vertices: it needs all three of a triangle, and its number.

@@ -10,6 +10,7 @@
 #include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/scene_textures.h"
 #include "engine_bridge/gl/targets.h"
+#include "engine_bridge/scene/placed.h"
 
 namespace pellucid::gl {
 
@@ -41,12 +42,6 @@ class Renderer {
   const GeometryStream& geometry() const { return stream_; }
 
  private:
-  struct Drawable {  // per instance
-    glm::dmat4 viewFromObject;
-    glm::mat4 position;
-    glm::mat3 normal;
-    float thicknessScale;
-  };
   struct Shader {  // per primitive
     std::vector<std::string> surface;
     bool vertexColours;
@@ -67,7 +62,7 @@ class Renderer {
   ProgramCache programs_;
   Buffer frameBuffer_, materialBuffer_, lightBuffer_;
   std::size_t materialStride_ = 0;
-  std::vector<Drawable> drawables_;
+  std::vector<Placed> placed_;  // per instance
   std::vector<Shader> shaders_;
   int lights_ = 0;
   bool anySolid_ = false, canAdd_ = false, anyRefracts_ = false, anyDiffuses_ = false;
