@@ -13,6 +13,7 @@ namespace {
 constexpr float kMostRadiance = 1e15f;  // leaves room for products in float
 constexpr float kMostDistance = 1e15f;
 constexpr float kMostIor = 100.0f;
+constexpr float kMostDispersion = 100.0f;  // an Abbe number of .2; real glass has 20 to 90
 constexpr double kMirrorF0 = 0.999999;  // reflectance of an infinite index, as near as a finite one needs to come
 
 struct MaterialReader {
@@ -106,6 +107,12 @@ struct MaterialReader {
       material.attenuationDistance = std::max(static_cast<float>(metres), 1e-30f);
   }
 
+  void dispersion() const {
+    const auto extension = source.extension("KHR_materials_dispersion");
+    if (extension) material.dispersion = extension->number("dispersion", 0.0f, 0.0f, kMostDispersion, notes);
+    if (material.dispersion > 0.0f) note("its dispersion is not drawn; light of every colour bends alike");
+  }
+
   void diffuseTransmission() const {
     const auto extension = source.extension("KHR_materials_diffuse_transmission");
     if (!extension) return;
@@ -138,6 +145,7 @@ Support supportFor(const std::string& extension) {
   using namespace std::string_view_literals;
   constexpr std::string_view kRead[] = {"KHR_lights_punctual"sv,
                                         "KHR_materials_diffuse_transmission"sv,
+                                        "KHR_materials_dispersion"sv,
                                         "KHR_materials_emissive_strength"sv,
                                         "KHR_materials_ior"sv,
                                         "KHR_materials_specular"sv,
@@ -163,6 +171,7 @@ Material readMaterial(const GltfFile& file, std::size_t index, double metresPerU
   reader.transmission();
   reader.indexOfRefraction();
   reader.volume(metresPerUnit);
+  reader.dispersion();
   reader.diffuseTransmission();
   reader.extras();
   return material;

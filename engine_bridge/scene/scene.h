@@ -16,10 +16,10 @@ namespace pellucid {
 // Object space, glTF axes. 64 bytes.
 struct Vertex {
   glm::vec3 position;
-  glm::vec3 normal;        // unit; computed flat when the file has none
-  glm::vec2 uv[2];         // TEXCOORD_0 and 1
-  glm::vec4 colour{1.0f};  // COLOR_0, linear
-  glm::vec2 spare{0.0f};   // keeps rows of 16 bytes
+  glm::vec3 normal;         // unit; computed flat when the file has none
+  glm::vec2 uv[2];          // TEXCOORD_0 and 1
+  glm::vec4 colour{1.0f};   // COLOR_0, linear
+  glm::vec2 tangent{0.0f};  // packed as shaders/shared/surface.glsl says; 0 for none
 };
 static_assert(sizeof(Vertex) == 64);
 
@@ -54,8 +54,13 @@ struct Material {
   float thickness = 0.0f;            // object space
   float attenuationDistance = 0.0f;  // metres, 0 = infinite
   glm::vec3 attenuationColor{1.0f};
+  float dispersion = 0.0f;  // KHR_materials_dispersion: 20 over the Abbe number, 0 for none
   float diffuseTransmission = 0.0f;
-  TextureRef baseColorTexture, metallicRoughnessTexture, emissiveTexture, transmissionTexture, thicknessTexture;
+  float specular = 1.0f;          // KHR_materials_specular: strength of a dielectric's reflection, [0,1]
+  glm::vec3 specularColor{1.0f};  // its tint head-on, >= 0
+  float normalScale = 1.0f;
+  TextureRef baseColorTexture, metallicRoughnessTexture, emissiveTexture, transmissionTexture, thicknessTexture,
+      normalTexture;
   // extras.pellucid and --set MATERIAL.key=value
   std::optional<float> collimation;  // [0,1]
   std::optional<float> coverage;     // [0,1], multiplies alpha

@@ -108,6 +108,12 @@ TEST(Materials, SpecularIsHarmlessAtItsDefaultsAndNotedElsewhere) {
   EXPECT_TRUE(noted(scene, "material glass: its specular"));
 }
 
+TEST(Materials, DispersionIsRead) {
+  const Scene scene = sceneWith(withExtension("KHR_materials_dispersion", {{"dispersion", 0.36}}));
+  EXPECT_EQ(scene.materials.at(0).dispersion, 0.36f);
+  EXPECT_EQ(sceneWith(Json::object()).materials.at(0).dispersion, 0.0f);
+}
+
 TEST(Materials, DiffuseTransmissionFactorOnly) {
   const Scene plain =
       sceneWith(withExtension("KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 0.5}}));
@@ -158,6 +164,7 @@ TEST(Extensions, WhatIsReadOrHarmlessIsNotNoted) {
   builder.triangle();
   const Json names = {"KHR_lights_punctual",
                       "KHR_materials_diffuse_transmission",
+                      "KHR_materials_dispersion",
                       "KHR_materials_emissive_strength",
                       "KHR_materials_ior",
                       "KHR_materials_specular",
