@@ -65,7 +65,7 @@ Layout checkedLayout(GltfFile& file, const JsonView& holder, std::size_t count, 
   if (const auto meshopt = view.extension("EXT_meshopt_compression"))
     meshopt->refuse("is compressed, which is not supported");
   const std::size_t offset = holder.unsignedInteger("byteOffset", 0);
-  Layout layout{file.viewBytes(view), elementSize};
+  Layout layout{file.viewBytes(view).bytes(), elementSize};
   if (const std::optional<JsonView> stride = mayStride ? view.find("byteStride") : std::nullopt) {
     layout.stride = stride->unsignedInteger();
     if (layout.stride == 0) layout.stride = elementSize;  // glTF 1.0's word for packed, still written by some

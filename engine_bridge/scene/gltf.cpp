@@ -196,7 +196,13 @@ Scene loadScene(const std::vector<std::string>& paths, const SceneOptions& optio
       GltfFile file(paths[i]);
       Notes notes(paths[i], scene.notes);
       checkExtensions(file, notes);
-      FileLoader(file, i, options, scene, notes).load();
+      try {
+        FileLoader(file, i, options, scene, notes).load();
+      } catch (const InputError&) {
+        file.requireWhole();  // what is missing explains what was found
+        throw;
+      }
+      file.requireWhole();
       notes.finish();
     } catch (const std::bad_alloc&) {
       throw ResourceError(fmt::format("{}: does not fit in memory", paths[i]));

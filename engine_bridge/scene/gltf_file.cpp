@@ -42,6 +42,12 @@ bool nestedTooDeep(Bytes text) {
   return false;
 }
 
+std::vector<std::uint8_t> dataUriBytes(const std::string& uri, const std::string& whose) {
+  std::vector<std::uint8_t> bytes;
+  if (!decodeDataUri(uri, bytes)) throw InputError(fmt::format("{}: its data: URI is malformed", whose));
+  return bytes;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::string& whose) {
@@ -62,9 +68,10 @@ std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::stri
   return bytes;
 }
 
-GltfFile::GltfFile(const std::string& path) : path_(path), content_(readWholeFile(path, "glTF scene")) {
+GltfFile::GltfFile(const std::string& path)
+    : path_(path), content_(std::make_shared<MappedFile>(path, "glTF scene")) {
   bytesRead_ = content_.size();
-  const Bytes all(content_);
+  const Bytes all = content_.bytes();
   if (all.size() < 4 || littleEndian32(all, 0) != kGlbMagic) {
     parseJson(all);
     return;
@@ -92,7 +99,7 @@ GltfFile::GltfFile(const std::string& path) : path_(path), content_(readWholeFil
       text = chunk;
       hasText = true;
     } else if (kind == kBinChunk && !hasBinary_) {
-      binary_ = chunk;
+      binary_ = content_.part(at + 8, size);
       hasBinary_ = true;
     }
     at += 8 + (size + 3) / 4 * 4;
@@ -108,8 +115,11 @@ void GltfFile::parseJson(Bytes text) {
   try {
     json_ = nlohmann::json::parse(text.begin(), text.end());
   } catch (const nlohmann::json::exception& error) {
+    requireWhole();
     throw InputError(printable(fmt::format("{}: is not glTF: {}", path_, error.what())));
   }
+  requireWhole();
+  content_.file()->letGo(text);
   const std::string version = root().at("asset").at("version").string();
   const std::string least = root().at("asset").string("minVersion", "2.0");
   if (version.substr(0, 2) != "2." || least != "2.0") {
@@ -130,29 +140,29 @@ JsonView GltfFile::item(const char* array, const JsonView& reference) const {
   return item(array, reference.index(count(array), array));
 }
 
-Bytes GltfFile::viewBytes(const JsonView& view) {
+SharedBytes GltfFile::viewBytes(const JsonView& view) {
   const std::size_t offset = view.unsignedInteger("byteOffset", 0);
   const std::size_t length = view.at("byteLength").unsignedInteger();
   const JsonView reference = view.at("buffer");
-  const Bytes buffer = bufferBytes(reference.index(count("buffers"), "buffers"));
+  const SharedBytes buffer = bufferBytes(reference.index(count("buffers"), "buffers"));
   if (offset > buffer.size() || length > buffer.size() - offset) {
     view.refuse(fmt::format("covers bytes {} to {}; its buffer has {}", offset, offset + length, buffer.size()));
   }
-  return buffer.subspan(offset, length);
+  return buffer.part(offset, length);
 }
 
-Bytes GltfFile::bufferBytes(std::size_t index) {
+SharedBytes GltfFile::bufferBytes(std::size_t index) {
   const JsonView buffer = item("buffers", index);
   const std::size_t length = buffer.at("byteLength").unsignedInteger();
   const std::optional<JsonView> uri = buffer.find("uri");
-  Bytes found;
+  SharedBytes found;
   if (!uri) {
     if (index != 0 || !hasBinary_) buffer.refuse("has no uri, and the file no binary chunk for it");
     found = binary_;
   } else {
     auto cached = buffers_.find(index);
     if (cached == buffers_.end()) {
-      cached = buffers_.emplace(index, uriBytes(uri->string(), path_ + ": " + buffer.where())).first;
+      cached = buffers_.emplace(index, uriBuffer(uri->string(), path_ + ": " + buffer.where())).first;
       bytesRead_ += cached->second.size();
     }
     found = cached->second;
@@ -160,15 +170,16 @@ Bytes GltfFile::bufferBytes(std::size_t index) {
   if (found.size() < length) {
     buffer.refuse(fmt::format("is cut short: found {} bytes, byteLength promises {}", found.size(), length));
   }
-  return found.first(length);
+  return found.part(0, length);
 }
 
-std::vector<std::uint8_t> GltfFile::uriBytes(const std::string& uri, const std::string& whose) const {
-  if (isDataUri(uri)) {
-    std::vector<std::uint8_t> bytes;
-    if (!decodeDataUri(uri, bytes)) throw InputError(fmt::format("{}: its data: URI is malformed", whose));
-    return bytes;
-  }
+void GltfFile::requireWhole() const {
+  content_.file()->requireWhole();
+  for (const auto& [index, buffer] : buffers_)
+    if (buffer.file()) buffer.file()->requireWhole();
+}
+
+std::string GltfFile::pathOf(const std::string& uri, const std::string& whose) const {
   const std::string_view scheme = uriScheme(uri);
   if (!scheme.empty()) {
     throw InputError(
@@ -176,7 +187,16 @@ std::vector<std::uint8_t> GltfFile::uriBytes(const std::string& uri, const std::
   }
   const std::string name = decodePercent(uri);
   if (name.find('\0') != std::string::npos) throw InputError(fmt::format("{}: its URI holds a zero byte", whose));
-  return readWholeFile((std::filesystem::path(path_).parent_path() / name).string(), printable(whose));
+  return (std::filesystem::path(path_).parent_path() / name).string();
+}
+
+SharedBytes GltfFile::uriBuffer(const std::string& uri, const std::string& whose) const {
+  if (isDataUri(uri)) return SharedBytes(dataUriBytes(uri, whose));
+  return SharedBytes(std::make_shared<MappedFile>(pathOf(uri, whose), printable(whose)));
+}
+
+std::vector<std::uint8_t> GltfFile::uriBytes(const std::string& uri, const std::string& whose) const {
+  return isDataUri(uri) ? dataUriBytes(uri, whose) : readWholeFile(pathOf(uri, whose), printable(whose));
 }
 
 }  // namespace pellucid::gltf

@@ -3,15 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "engine_bridge/scene/json_view.h"
+#include "engine_bridge/scene/mapped_file.h"
 
 namespace pellucid::gltf {
-
-using Bytes = std::span<const std::uint8_t>;
 
 // The whole of a regular file. Throws InputError when it is missing, not a regular file or unreadable.
 //   whose  begins the sentence: "scene.gltf: buffers[0]"
@@ -33,23 +31,27 @@ class GltfFile {
   // The element of `array` that `reference` points at.
   JsonView item(const char* array, const JsonView& reference) const;
 
-  // The bytes of a buffer view, checked against its buffer. Buffers are read at first use and kept.
-  Bytes viewBytes(const JsonView& view);
+  // The bytes of a buffer view, checked against its buffer. Buffers are mapped at first use and kept.
+  SharedBytes viewBytes(const JsonView& view);
   // The content of a data: URI, or of a file beside this one.
   std::vector<std::uint8_t> uriBytes(const std::string& uri, const std::string& whose) const;
-  // Everything read so far. What a scene may grow to is measured against it.
+  // Everything read or mapped so far. What a scene may grow to is measured against it.
   std::size_t bytesRead() const { return bytesRead_; }
+  // Throws InputError when a file that was mapped has been cut short since.
+  void requireWhole() const;
 
  private:
-  Bytes bufferBytes(std::size_t index);
+  SharedBytes bufferBytes(std::size_t index);
+  SharedBytes uriBuffer(const std::string& uri, const std::string& whose) const;
+  std::string pathOf(const std::string& uri, const std::string& whose) const;
   void parseJson(Bytes text);
 
   std::string path_;
-  std::vector<std::uint8_t> content_;  // of a .glb
-  Bytes binary_;                       // its BIN chunk
+  SharedBytes content_;  // of the .gltf or .glb
+  SharedBytes binary_;   // the BIN chunk of a .glb
   bool hasBinary_ = false;
   nlohmann::json json_;
-  std::map<std::size_t, std::vector<std::uint8_t>> buffers_;
+  std::map<std::size_t, SharedBytes> buffers_;
   std::size_t bytesRead_ = 0;
 };
 

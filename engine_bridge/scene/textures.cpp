@@ -113,8 +113,8 @@ int TextureReader::load(const JsonView& texture, TexelUse use, const std::string
   if (uri) {
     bytes = file_->uriBytes(uri->string(), whose);
   } else {
-    const Bytes view = file_->viewBytes(file_->item("bufferViews", image.at("bufferView")));
-    bytes.assign(view.begin(), view.end());
+    const SharedBytes view = file_->viewBytes(file_->item("bufferViews", image.at("bufferView")));
+    bytes.assign(view.bytes().begin(), view.bytes().end());
   }
   result.texels = decodeImage(bytes, use, whose, external ? result.name : "", *notes_);
   texels_ += result.texels.size();

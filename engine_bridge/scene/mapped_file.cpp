@@ -1,0 +1,137 @@
+#include "engine_bridge/scene/mapped_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <mutex>
+
+#include "engine_bridge/scene/json_view.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+
+// Slots are never freed, so that a handler in any thread may walk the list at any time.
+struct MappedFile::Slot {
+  std::atomic<std::uintptr_t> begin{0}, end{0};  // empty: nobody's
+  std::atomic<bool> taken{true}, broken{false};
+  Slot* next = nullptr;
+};
+
+namespace {
+
+std::atomic<MappedFile::Slot*> slots{nullptr};
+static_assert(std::atomic<std::uintptr_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+struct sigaction earlier {};
+
+std::uintptr_t pageSize() {
+  static const auto size = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  return size;
+}
+
+// A page of ours that the file no longer has becomes one of zeros. Anything else goes to whoever came before us.
+void onBusError(int, siginfo_t* information, void*) {
+  const auto at = reinterpret_cast<std::uintptr_t>(information->si_addr);
+  for (MappedFile::Slot* slot = slots.load(); slot; slot = slot->next) {
+    if (at < slot->begin.load() || at >= slot->end.load()) continue;
+    void* const page = reinterpret_cast<void*>(at / pageSize() * pageSize());
+    if (::mmap(page, pageSize(), PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == MAP_FAILED) break;
+    slot->broken = true;
+    return;
+  }
+  ::sigaction(SIGBUS, &earlier, nullptr);  // and the read that failed is tried again
+}
+
+void handleBusErrors() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    pageSize();
+    struct sigaction action {};
+    action.sa_sigaction = onBusError;
+    action.sa_flags = SA_SIGINFO;
+    sigemptyset(&action.sa_mask);
+    ::sigaction(SIGBUS, &action, &earlier);
+  });
+}
+
+MappedFile::Slot* takeSlot(std::uintptr_t begin, std::uintptr_t end) {
+  MappedFile::Slot* slot = slots.load();
+  bool taken = false;
+  while (slot && !slot->taken.compare_exchange_strong(taken, true)) {
+    slot = slot->next;
+    taken = false;
+  }
+  if (!slot) {
+    slot = new MappedFile::Slot;
+    slot->next = slots.load();
+    while (!slots.compare_exchange_weak(slot->next, slot)) {
+    }
+  }
+  slot->broken = false;
+  slot->begin = begin;
+  slot->end = end;
+  return slot;
+}
+
+void giveBack(MappedFile::Slot* slot) {
+  slot->end = 0;
+  slot->begin = 0;
+  slot->taken = false;
+}
+
+}  // namespace
+
+MappedFile::MappedFile(const std::string& path, const std::string& whose) : path_(path), whose_(whose) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(gltf::printable(fmt::format("{}: {} {}", whose, path, what)));
+  };
+  // Not blocking: opening a pipe would wait for its other end.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) refuse(errno == ENOENT || errno == ENOTDIR ? "does not exist" : "cannot be opened for reading");
+  struct Closed {
+    int descriptor;
+    ~Closed() { ::close(descriptor); }
+  } const closed{descriptor};
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) refuse("cannot be opened for reading");
+  // A device or a pipe has no size to check against.
+  if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return;
+  handleBusErrors();
+  void* const mapped = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (mapped == MAP_FAILED) refuse(fmt::format("cannot be mapped: {}", strerror(errno)));
+  bytes_ = {static_cast<const std::uint8_t*>(mapped), size};
+  const auto begin = reinterpret_cast<std::uintptr_t>(mapped);
+  slot_ = takeSlot(begin, begin + (size + pageSize() - 1) / pageSize() * pageSize());
+}
+
+MappedFile::~MappedFile() {
+  if (bytes_.empty()) return;
+  giveBack(slot_);
+  ::munmap(const_cast<std::uint8_t*>(bytes_.data()), bytes_.size());
+}
+
+void MappedFile::letGo(Bytes part) const {
+  if (part.empty() || bytes_.empty()) return;
+  const auto begin = reinterpret_cast<std::uintptr_t>(bytes_.data());
+  const auto first = std::max(reinterpret_cast<std::uintptr_t>(part.data()), begin) / pageSize() * pageSize();
+  const auto last = std::min(reinterpret_cast<std::uintptr_t>(part.data() + part.size()), begin + bytes_.size());
+  if (first < last) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
+
+void MappedFile::requireWhole() const {
+  if (slot_ && slot_->broken)
+    throw InputError(gltf::printable(
+        fmt::format("{}: {} could not be read to its end: found it cut short or damaged, expected {} bytes as when it "
+                    "was opened",
+                    whose_, path_, bytes_.size())));
+}
+
+}  // namespace pellucid

@@ -1,0 +1,67 @@
+// A file in the address space, and bytes that keep what they lie in alive: the one thing glTF readers hand around.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pellucid {
+
+using Bytes = std::span<const std::uint8_t>;
+
+// Read-only. Pages come into memory as they are read and leave when they are let go, so a file may be larger than
+// memory. When the file is cut short or its disk fails while it is mapped, reading goes on with zeros and
+// requireWhole() throws: whoever used what was read asks it before anybody believes the result.
+class MappedFile {
+ public:
+  // Throws InputError when the file is missing, not a regular file or unreadable.
+  //   whose  begins the sentence: "scene.gltf: buffers[0]"
+  MappedFile(const std::string& path, const std::string& whose);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  Bytes bytes() const { return bytes_; }
+  const std::string& path() const { return path_; }
+  // The pages that lie in these bytes leave memory; reading them again brings them back. Any bytes may be named.
+  void letGo(Bytes part) const;
+  // Throws InputError when some of the file could not be read.
+  void requireWhole() const;
+
+  struct Slot;  // one entry of the list that the handler of bus errors walks
+
+ private:
+  std::string path_, whose_;
+  Bytes bytes_;
+  Slot* slot_ = nullptr;
+};
+
+// Bytes of a file, or decoded ones that lie in memory.
+class SharedBytes {
+ public:
+  SharedBytes() = default;
+  explicit SharedBytes(std::shared_ptr<const MappedFile> file) : bytes_(file->bytes()), file_(std::move(file)) {}
+  explicit SharedBytes(std::vector<std::uint8_t> decoded)
+      : memory_(std::make_shared<const std::vector<std::uint8_t>>(std::move(decoded))) {
+    bytes_ = *memory_;
+  }
+
+  Bytes bytes() const { return bytes_; }
+  std::size_t size() const { return bytes_.size(); }
+  SharedBytes part(std::size_t offset, std::size_t length) const {
+    SharedBytes some = *this;
+    some.bytes_ = bytes_.subspan(offset, length);
+    return some;
+  }
+  // The file they lie in; null for bytes in memory.
+  const std::shared_ptr<const MappedFile>& file() const { return file_; }
+
+ private:
+  Bytes bytes_;
+  std::shared_ptr<const MappedFile> file_;
+  std::shared_ptr<const std::vector<std::uint8_t>> memory_;
+};
+
+}  // namespace pellucid
