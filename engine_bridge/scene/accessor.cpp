@@ -48,7 +48,8 @@ std::size_t typeWidth(const JsonView& type) {
   if (name == "VEC2") return 2;
   if (name == "VEC3") return 3;
   if (name == "VEC4") return 4;
-  type.refuse(fmt::format("is {}; expected SCALAR, VEC2, VEC3 or VEC4", name));
+  if (name == "MAT4") return 16;
+  type.refuse(fmt::format("is {}; expected SCALAR, VEC2, VEC3, VEC4 or MAT4", name));
 }
 
 // Elements in a buffer view, `stride` bytes apart.
@@ -62,8 +63,6 @@ struct Layout {
 Layout checkedLayout(GltfFile& file, const JsonView& holder, std::size_t count, std::size_t elementSize,
                      bool mayStride) {
   const JsonView view = file.item("bufferViews", holder.at("bufferView"));
-  if (const auto meshopt = view.extension("EXT_meshopt_compression"))
-    meshopt->refuse("is compressed, which is not supported");
   const std::size_t offset = holder.unsignedInteger("byteOffset", 0);
   Layout layout{file.viewBytes(view).bytes(), elementSize};
   if (const std::optional<JsonView> stride = mayStride ? view.find("byteStride") : std::nullopt) {
@@ -100,18 +99,18 @@ T load(const std::uint8_t* bytes) {
   return value;
 }
 
-float loadFloat(const std::uint8_t* bytes, std::size_t type) {
+double loadComponent(const std::uint8_t* bytes, std::size_t type) {
   switch (type) {
     case kByte:
-      return std::max(static_cast<float>(load<std::int8_t>(bytes)) / 127.0f, -1.0f);
+      return load<std::int8_t>(bytes);
     case kUByte:
-      return static_cast<float>(*bytes) / 255.0f;
+      return *bytes;
     case kShort:
-      return std::max(static_cast<float>(load<std::int16_t>(bytes)) / 32767.0f, -1.0f);
+      return load<std::int16_t>(bytes);
     case kUShort:
-      return static_cast<float>(load<std::uint16_t>(bytes)) / 65535.0f;
+      return load<std::uint16_t>(bytes);
     default:
-      return load<float>(bytes);
+      return static_cast<double>(load<float>(bytes));
   }
 }
 
@@ -160,33 +159,66 @@ void forEachElement(GltfFile& file, const JsonView& accessor, std::size_t count,
 
 }  // namespace
 
-Elements readElements(GltfFile& file, const JsonView& reference, std::initializer_list<std::size_t> widths,
-                      Integers integers) {
+bool ElementType::integer() const {
+  return component != kFloat;
+}
+
+float ElementType::valueOf(double value) const {
+  const auto plain = static_cast<float>(value);
+  if (!normalised) return plain;
+  switch (component) {
+    case kByte:
+      return std::max(plain / 127.0f, -1.0f);
+    case kUByte:
+      return plain / 255.0f;
+    case kShort:
+      return std::max(plain / 32767.0f, -1.0f);
+    case kUShort:
+      return plain / 65535.0f;
+    default:
+      return plain;
+  }
+}
+
+ElementType elementType(GltfFile& file, const JsonView& reference, std::initializer_list<std::size_t> widths,
+                        Integers integers) {
   const JsonView accessor = file.item("accessors", reference);
   const JsonView typeName = accessor.at("type");
   const JsonView componentType = accessor.at("componentType");
-  Elements elements;
-  elements.width = typeWidth(typeName);
-  if (std::find(widths.begin(), widths.end(), elements.width) == widths.end()) {
+  ElementType type;
+  type.width = typeWidth(typeName);
+  if (std::find(widths.begin(), widths.end(), type.width) == widths.end()) {
     typeName.refuse(fmt::format("is {}, which {} cannot be", typeName.string(), reference.where()));
   }
-  const std::size_t size = componentSize(componentType);
-  const std::size_t type = componentType.unsignedInteger();
-  const bool normalised = accessor.boolean("normalized", false);
-  const bool integer = type != kFloat;
-  if (integer && (type == kUInt || integers == Integers::none || !normalised)) {
-    componentType.refuse(
-        fmt::format("is {}{}; {} must be {}", type, normalised ? ", normalised" : "", reference.where(),
-                    integers == Integers::none ? "float (5126)" : "float (5126) or normalised bytes or shorts"));
+  componentSize(componentType);
+  type.component = componentType.unsignedInteger();
+  type.normalised = accessor.boolean("normalized", false);
+  const bool allowed = integers == Integers::any || (integers == Integers::normalised && type.normalised);
+  if (type.integer() && (type.component == kUInt || !allowed)) {
+    constexpr const char* kExpected[] = {"float (5126)", "float (5126) or normalised bytes or shorts",
+                                         "float (5126), bytes or shorts"};
+    componentType.refuse(fmt::format("is {}{}; {} must be {}", type.component, type.normalised ? ", normalised" : "",
+                                     reference.where(), kExpected[static_cast<int>(integers)]));
   }
-  elements.count = checkedCount(accessor);
+  type.count = checkedCount(accessor);
+  return type;
+}
+
+Elements readElements(GltfFile& file, const JsonView& reference, std::initializer_list<std::size_t> widths,
+                      Integers integers) {
+  const JsonView accessor = file.item("accessors", reference);
+  const ElementType type = elementType(file, reference, widths, integers);
+  const std::size_t size = componentSize(accessor.at("componentType"));
+  Elements elements;
+  elements.width = type.width;
+  elements.count = type.count;
   const std::size_t elementSize = size * elements.width;
   // Checked before anything is allocated: a huge count is only a number so far.
   if (accessor.find("bufferView")) checkedLayout(file, accessor, elements.count, elementSize, true);
   elements.values.assign(elements.count * elements.width, 0.0f);
   forEachElement(file, accessor, elements.count, elementSize, [&](std::size_t i, const std::uint8_t* bytes) {
     for (std::size_t c = 0; c < elements.width; ++c) {
-      elements.values[i * elements.width + c] = loadFloat(bytes + c * size, type);
+      elements.values[i * elements.width + c] = type.valueOf(loadComponent(bytes + c * size, type.component));
     }
   });
   return elements;

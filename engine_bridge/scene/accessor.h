@@ -15,12 +15,23 @@ struct Elements {
   float at(std::size_t element, std::size_t component) const { return values[element * width + component]; }
 };
 
-// Which integer components an attribute may have, next to floats.
-enum class Integers { none, normalised };
+// Which integer components an attribute may have, next to floats. `any` with KHR_mesh_quantization only.
+enum class Integers { none, normalised, any };
+
+// What an accessor says that its elements are, checked.
+struct ElementType {
+  std::size_t width = 0, component = 0, count = 0;
+  bool normalised = false;
+  bool integer() const;
+  // A component's value as glTF reads it.
+  float valueOf(double component) const;
+};
+ElementType elementType(GltfFile& file, const JsonView& reference, std::initializer_list<std::size_t> widths,
+                        Integers integers);
 
 // Throws InputError naming the accessor: wrong type, past its view, absurd count, sparse index out of range.
 //   reference  the JSON number that names the accessor, as in attributes.POSITION
-//   widths     components allowed: {3} for VEC3, {3, 4} for VEC3 or VEC4
+//   widths     components allowed: {3} for VEC3, {3, 4} for VEC3 or VEC4, {16} for MAT4
 Elements readElements(GltfFile& file, const JsonView& reference, std::initializer_list<std::size_t> widths,
                       Integers integers);
 

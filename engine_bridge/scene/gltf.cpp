@@ -6,11 +6,15 @@
 #include <map>
 #include <new>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "engine_bridge/scene/instancing.h"
 #include "engine_bridge/scene/materials.h"
 #include "engine_bridge/scene/nodes.h"
+#include "engine_bridge/scene/pose.h"
 #include "engine_bridge/scene/primitives.h"
+#include "engine_bridge/scene/tangents.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid {
@@ -38,7 +42,6 @@ void checkExtensions(const GltfFile& file, Notes& notes) {
     const std::string& name = used->at(i).string();
     if (supportFor(name) == Support::none) notes.add(fmt::format("the extension {} is not drawn", name));
   }
-  if (file.count("skins") > 0) notes.add("skins are not applied; meshes are drawn in the pose they are stored in");
   if (file.count("animations") > 0) notes.add("animations are not played; nodes stand where the file puts them");
 }
 
@@ -70,6 +73,12 @@ Facing facingOf(const glm::dmat4& worldFromObject) {
   return volume < 0.0 ? Facing::mirrored : Facing::kept;
 }
 
+bool hasTangents(const Primitive& primitive) {
+  for (const Vertex& vertex : primitive.vertices)
+    if (vertex.tangent != glm::vec2(0.0f)) return true;
+  return false;
+}
+
 // One file's meshes and materials on their way into the scene.
 class FileLoader {
  public:
@@ -80,6 +89,7 @@ class FileLoader {
     const std::vector<PlacedNode> nodes = placeNodes(file_, options_.metresPerUnit, notes_);
     readMaterials(nodes);
     firstInstance_ = scene_.instances.size();
+    poses_.emplace(file_, nodes, options_.metresPerUnit);
     for (const PlacedNode& node : nodes) placeMesh(node);
     readLights(file_, nodes, options_, notes_, scene_.lights);
     readCameras(file_, nodes, options_.metresPerUnit, scene_.cameras);
@@ -123,19 +133,28 @@ class FileLoader {
     return default_;
   }
 
+  // One mesh as some node draws it.
+  struct Drawn {
+    std::size_t mesh;
+    std::size_t posed;  // the node's number and 1 where its pose is its own, else 0
+    const Pose* pose;
+  };
+
   // Index into the scene's primitives, -1 when there is nothing to draw. Read once, and once more if mirrored.
-  int primitiveOf(std::size_t mesh, std::size_t index, const JsonView& source, bool mirrored) {
-    const auto key = std::make_tuple(mesh, index, mirrored);
+  int primitiveOf(const Drawn& drawn, std::size_t index, const JsonView& source, bool mirrored) {
+    const auto key = std::make_tuple(drawn.mesh, drawn.posed, index, mirrored);
     if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
     int result = -1;
     if (mirrored) {
-      const int original = primitiveOf(mesh, index, source, false);
+      const int original = primitiveOf(drawn, index, source, false);
       if (original >= 0) {
         result = static_cast<int>(scene_.primitives.size());
         scene_.primitives.push_back(withFlippedWinding(scene_.primitives[static_cast<std::size_t>(original)]));
       }
-    } else if (std::optional<Primitive> primitive = primitives_.read(source)) {
+    } else if (std::optional<Primitive> primitive = primitives_.read(source, *drawn.pose)) {
       primitive->material = materialOf(source);
+      const TextureRef& normals = scene_.materials[static_cast<std::size_t>(primitive->material)].normalTexture;
+      if (normals.texture >= 0 && !hasTangents(*primitive)) makeTangents(*primitive, normals);
       result = static_cast<int>(scene_.primitives.size());
       scene_.primitives.push_back(std::move(*primitive));
     }
@@ -144,26 +163,51 @@ class FileLoader {
   }
 
   void placeMesh(const PlacedNode& node) {
-    const std::optional<JsonView> mesh = meshOf(node);
-    if (!mesh) return;
+    const std::optional<JsonView> primitives = meshOf(node);
+    if (!primitives) return;
     const JsonView source = file_.item("nodes", node.index);
     const std::size_t meshIndex = source.at("mesh").index(file_.count("meshes"), "meshes");
-    const Facing facing = facingOf(node.worldFromObject);
+    const Pose pose = poses_->of(source, file_.item("meshes", meshIndex));
+    const bool skinned = !pose.joints.empty(), own = skinned || source.find("weights");
+    const Drawn drawn{meshIndex, own ? node.index + 1 : 0, &pose};
+    // Joints place a skinned mesh; its own node does not count (glTF 2.0, Skins).
+    glm::dmat4 world = node.worldFromObject;
+    if (skinned) {
+      world = glm::dmat4(options_.metresPerUnit);
+      world[3][3] = 1.0;
+    }
+    const std::optional<std::vector<glm::dmat4>> many = instanceTransforms(file_, source);
+    if (!many) {
+      place(node, source, drawn, *primitives, world, 0);
+      return;
+    }
+    for (std::size_t i = 0; i < many->size(); ++i) {
+      const glm::dmat4 one = world * (*many)[i];
+      checkMagnitude(source, one);
+      place(node, source, drawn, *primitives, one, i + 1);
+    }
+  }
+
+  //   copy  0, or 1 and up for the instances of one node
+  void place(const PlacedNode& node, const JsonView& source, const Drawn& drawn, const JsonView& primitives,
+             const glm::dmat4& world, std::size_t copy) {
+    const Facing facing = facingOf(world);
     if (facing == Facing::flat) {
       notes_.add(fmt::format("node {} has a scale of zero and is not drawn", node.name));
       return;
     }
-    for (std::size_t i = 0; i < mesh->size(); ++i) {
-      const int primitive = primitiveOf(meshIndex, i, mesh->at(i), facing == Facing::mirrored);
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      const int primitive = primitiveOf(drawn, i, primitives.at(i), facing == Facing::mirrored);
       if (primitive < 0) continue;
       if (scene_.instances.size() - firstInstance_ >= kFreeInstances + file_.bytesRead()) {
         source.refuse(fmt::format("takes the file beyond {} instances", kFreeInstances + file_.bytesRead()));
       }
       Instance instance;
-      instance.worldFromObject = node.worldFromObject;
+      instance.worldFromObject = world;
       instance.primitive = primitive;
       instance.node = node.name;
-      instance.identity = identityOf(fileIndex_, node.index, meshIndex, i);
+      instance.identity = identityOf(fileIndex_, node.index, drawn.mesh, i);
+      if (copy > 0) instance.identity = mixBits(instance.identity, static_cast<std::uint32_t>(copy));
       scene_.instances.push_back(std::move(instance));
     }
   }
@@ -174,7 +218,8 @@ class FileLoader {
   Scene& scene_;
   Notes& notes_;
   PrimitiveReader primitives_;
-  std::map<std::tuple<std::size_t, std::size_t, bool>, int> loaded_;
+  std::optional<PoseReader> poses_;
+  std::map<std::tuple<std::size_t, std::size_t, std::size_t, bool>, int> loaded_;
   std::size_t firstMaterial_ = 0, firstInstance_ = 0;
   int default_ = -1;
 };

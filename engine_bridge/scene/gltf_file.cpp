@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine_bridge/scene/meshopt.h"
 #include "engine_bridge/scene/uri.h"
 #include "gbuffer/errors.h"
 
@@ -22,6 +23,9 @@ std::uint32_t littleEndian32(Bytes bytes, std::size_t at) {
   return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
          static_cast<std::uint32_t>(bytes[at + 2]) << 16 | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
 }
+
+// What compressed views may unpack to, all together.
+constexpr std::size_t kFreeUnpacked = std::size_t{1} << 24, kUnpackedPerByte = 64;
 
 // Counted beforehand: the parser's own callback makes it take quadratic time.
 bool nestedTooDeep(Bytes text) {
@@ -68,8 +72,7 @@ std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::stri
   return bytes;
 }
 
-GltfFile::GltfFile(const std::string& path)
-    : path_(path), content_(std::make_shared<MappedFile>(path, "glTF scene")) {
+GltfFile::GltfFile(const std::string& path) : path_(path), content_(std::make_shared<MappedFile>(path, "glTF scene")) {
   bytesRead_ = content_.size();
   const Bytes all = content_.bytes();
   if (all.size() < 4 || littleEndian32(all, 0) != kGlbMagic) {
@@ -141,6 +144,22 @@ JsonView GltfFile::item(const char* array, const JsonView& reference) const {
 }
 
 SharedBytes GltfFile::viewBytes(const JsonView& view) {
+  const std::optional<JsonView> packed = view.extension("EXT_meshopt_compression");
+  if (!packed) return rangeOf(view);
+  auto cached = unpacked_.find(view.where());
+  if (cached == unpacked_.end()) {
+    cached = unpacked_.emplace(view.where(), SharedBytes(unpackMeshopt(view, *packed, rangeOf(*packed).bytes()))).first;
+    bytesUnpacked_ += cached->second.size();
+    // One compressed range that many views name.
+    if (bytesUnpacked_ > kFreeUnpacked + kUnpackedPerByte * bytesRead_) {
+      view.refuse(fmt::format("takes the file's unpacked views to {} bytes; expected at most {} a byte of it",
+                              bytesUnpacked_, kUnpackedPerByte));
+    }
+  }
+  return cached->second;
+}
+
+SharedBytes GltfFile::rangeOf(const JsonView& view) {
   const std::size_t offset = view.unsignedInteger("byteOffset", 0);
   const std::size_t length = view.at("byteLength").unsignedInteger();
   const JsonView reference = view.at("buffer");

@@ -31,7 +31,8 @@ class GltfFile {
   // The element of `array` that `reference` points at.
   JsonView item(const char* array, const JsonView& reference) const;
 
-  // The bytes of a buffer view, checked against its buffer. Buffers are mapped at first use and kept.
+  // The bytes of a buffer view, checked against its buffer, unpacked when they are compressed. Buffers are mapped at
+  // first use and kept.
   SharedBytes viewBytes(const JsonView& view);
   // The content of a data: URI, or of a file beside this one.
   std::vector<std::uint8_t> uriBytes(const std::string& uri, const std::string& whose) const;
@@ -42,6 +43,7 @@ class GltfFile {
 
  private:
   SharedBytes bufferBytes(std::size_t index);
+  SharedBytes rangeOf(const JsonView& holder);  // of the object with buffer, byteOffset and byteLength
   SharedBytes uriBuffer(const std::string& uri, const std::string& whose) const;
   std::string pathOf(const std::string& uri, const std::string& whose) const;
   void parseJson(Bytes text);
@@ -52,7 +54,8 @@ class GltfFile {
   bool hasBinary_ = false;
   nlohmann::json json_;
   std::map<std::size_t, SharedBytes> buffers_;
-  std::size_t bytesRead_ = 0;
+  std::map<std::string, SharedBytes> unpacked_;  // by the view's place in the file
+  std::size_t bytesRead_ = 0, bytesUnpacked_ = 0;
 };
 
 }  // namespace pellucid::gltf

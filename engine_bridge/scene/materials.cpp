@@ -12,9 +12,10 @@ namespace {
 
 constexpr float kMostRadiance = 1e15f;  // leaves room for products in float
 constexpr float kMostDistance = 1e15f;
+constexpr float kMostNormalScale = 1e3f;
 constexpr float kMostIor = 100.0f;
 constexpr float kMostDispersion = 100.0f;  // an Abbe number of .2; real glass has 20 to 90
-constexpr double kMirrorF0 = 0.999999;  // reflectance of an infinite index, as near as a finite one needs to come
+constexpr double kMirrorF0 = 0.999999;     // reflectance of an infinite index, as near as a finite one needs to come
 
 struct MaterialReader {
   const GltfFile& file;
@@ -51,7 +52,11 @@ struct MaterialReader {
     }
     material.emission = source.colour("emissiveFactor", glm::vec3(0.0f), 0.0f, 1.0f, notes);
     material.emissiveTexture = texture(source, "emissiveTexture", TexelUse::colour);
-    if (source.find("normalTexture")) note("its normal texture is not used");
+    if (const std::optional<JsonView> normals = source.find("normalTexture")) {
+      material.normalTexture = texture(source, "normalTexture", TexelUse::data);
+      material.normalScale = normals->number("scale", 1.0f, -kMostNormalScale, kMostNormalScale, notes);
+      note("its normal texture is not used");
+    }
   }
 
   void emissiveStrengthAndUnlit() const {
@@ -70,25 +75,27 @@ struct MaterialReader {
 
   void indexOfRefraction() const {
     const auto extension = source.extension("KHR_materials_ior");
-    const auto specular = source.extension("KHR_materials_specular");
-    const float factor = specular ? specular->number("specularFactor", 1.0f, 0.0f, 1.0f, notes) : 1.0f;
-    const glm::vec3 tint = specular
-                               ? specular->colour("specularColorFactor", glm::vec3(1.0f), 0.0f, kMostRadiance, notes)
-                               : glm::vec3(1.0f);
     const std::optional<JsonView> value = extension ? extension->find("ior") : std::nullopt;
-    if (value && value->number() == 0.0) {
-      // glTF's word for "the specular extension alone says what is reflected", an infinite index without it. The
-      // dielectric of the same reflectance head-on stands for it.
-      const double f0 = std::min(static_cast<double>(factor * std::max({tint.r, tint.g, tint.b})), kMirrorF0);
-      const double root = std::sqrt(f0);
-      material.ior = static_cast<float>((1.0 + root) / (1.0 - root));
-      note(fmt::format("ior 0 is taken as {:.6g}, which reflects as its specular factors say", material.ior));
-      return;
+    const bool infinite = value && value->number() == 0.0;
+    if (value && !infinite) material.ior = extension->number("ior", 1.5f, 1.0f, kMostIor, notes);
+    if (const auto specular = source.extension("KHR_materials_specular")) {
+      material.specular = specular->number("specularFactor", 1.0f, 0.0f, 1.0f, notes);
+      material.specularColor = specular->colour("specularColorFactor", glm::vec3(1.0f), 0.0f, kMostRadiance, notes);
+      if (material.specular != 1.0f || material.specularColor != glm::vec3(1.0f))
+        note("its specular extension is not used; it reflects as its ior says");
+      if (specular->find("specularTexture") || specular->find("specularColorTexture"))
+        note("the textures of its specular extension are not used; its factors are");
     }
-    if (value) material.ior = extension->number("ior", 1.5f, 1.0f, kMostIor, notes);
-    const bool plain = factor == 1.0f && tint == glm::vec3(1.0f);
-    const bool textured = specular && (specular->find("specularTexture") || specular->find("specularColorTexture"));
-    if (!plain || textured) note("its specular extension is not used; it reflects as its ior says");
+    if (!infinite) return;
+    // glTF's word for "the specular extension alone says what is reflected", an infinite index without it. The
+    // dielectric of the same reflectance head-on stands for it.
+    const glm::vec3 tint = material.specularColor;
+    const double f0 = std::min(static_cast<double>(material.specular * std::max({tint.r, tint.g, tint.b})), kMirrorF0);
+    const double root = std::sqrt(f0);
+    material.ior = static_cast<float>((1.0 + root) / (1.0 - root));
+    material.specular = 1.0f;
+    material.specularColor = glm::vec3(1.0f);
+    note(fmt::format("ior 0 is taken as {:.6g}, which reflects as its specular factors say", material.ior));
   }
 
   void volume(double metresPerUnit) const {
@@ -143,7 +150,10 @@ struct MaterialReader {
 
 Support supportFor(const std::string& extension) {
   using namespace std::string_view_literals;
-  constexpr std::string_view kRead[] = {"KHR_lights_punctual"sv,
+  constexpr std::string_view kRead[] = {"EXT_mesh_gpu_instancing"sv,
+                                        "EXT_meshopt_compression"sv,
+                                        "KHR_draco_mesh_compression"sv,
+                                        "KHR_lights_punctual"sv,
                                         "KHR_materials_diffuse_transmission"sv,
                                         "KHR_materials_dispersion"sv,
                                         "KHR_materials_emissive_strength"sv,
@@ -152,6 +162,7 @@ Support supportFor(const std::string& extension) {
                                         "KHR_materials_transmission"sv,
                                         "KHR_materials_unlit"sv,
                                         "KHR_materials_volume"sv,
+                                        "KHR_mesh_quantization"sv,
                                         "KHR_texture_transform"sv};
   constexpr std::string_view kHarmless[] = {"KHR_xmp"sv, "KHR_xmp_json_ld"sv, "KHR_materials_variants"sv};
   if (std::find(std::begin(kRead), std::end(kRead), extension) != std::end(kRead)) return Support::full;

@@ -44,18 +44,6 @@ glm::dmat4 localMatrix(const JsonView& node) {
   return local;
 }
 
-void checkMagnitude(const JsonView& node, const glm::dmat4& worldFromObject) {
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) {
-      const double value = worldFromObject[column][row];
-      if (!(std::abs(value) <= kMostMagnitude)) {
-        node.refuse(
-            fmt::format("has a world transform with {:g}; expected magnitudes up to {:g}", value, kMostMagnitude));
-      }
-    }
-  }
-}
-
 //   everyRoot  set when no scene chooses among them
 std::vector<std::size_t> rootNodes(const GltfFile& file, Notes& notes, bool& everyRoot) {
   const std::size_t count = file.count("nodes");
@@ -87,6 +75,18 @@ std::vector<std::size_t> rootNodes(const GltfFile& file, Notes& notes, bool& eve
 }
 
 }  // namespace
+
+void checkMagnitude(const JsonView& node, const glm::dmat4& worldFromObject) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      const double value = worldFromObject[column][row];
+      if (!(std::abs(value) <= kMostMagnitude)) {
+        node.refuse(
+            fmt::format("has a world transform with {:g}; expected magnitudes up to {:g}", value, kMostMagnitude));
+      }
+    }
+  }
+}
 
 std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, Notes& notes) {
   const std::size_t count = file.count("nodes");

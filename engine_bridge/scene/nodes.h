@@ -21,6 +21,9 @@ struct PlacedNode {
 // Throws InputError when a node is its own ancestor or has two parents, or a transform is not finite and affine.
 std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, Notes& notes);
 
+// Throws InputError when a node's world transform leaves the range of magnitudes that float products stand.
+void checkMagnitude(const JsonView& node, const glm::dmat4& worldFromObject);
+
 // Appends what KHR_lights_punctual puts on the nodes. Throws InputError.
 void readLights(const GltfFile& file, const std::vector<PlacedNode>& nodes, const SceneOptions& options, Notes& notes,
                 std::vector<Light>& lights);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "shaders/shading.h"
+
 namespace pellucid::gltf {
 
 namespace {
@@ -13,6 +15,7 @@ namespace {
 enum Mode : std::size_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kTriangleStrip, kTriangleFan };
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
+constexpr std::size_t kNoAccessor = static_cast<std::size_t>(-1);
 
 bool finite(glm::vec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -43,7 +46,22 @@ glm::vec2 uvAt(const Elements& elements, std::size_t i, std::size_t& repaired) {
   return glm::vec2(0.0f);
 }
 
+// At right angles to the normal; nothing where it has no direction.
+glm::vec2 tangentAt(const Elements& elements, std::size_t i, glm::vec3 normal) {
+  const glm::dvec3 along(vec3At(elements, i)), up(normal);
+  const glm::dvec3 flat = along - up * glm::dot(up, along);
+  const double length = glm::length(flat);
+  if (!std::isfinite(length) || !(length > 1e-6 * glm::length(along))) return glm::vec2(0.0f);
+  return shading::packTangent(glm::vec3(flat / length), elements.at(i, 3) < 0.0f ? -1.0f : 1.0f);
+}
+
 }  // namespace
+
+PrimitiveReader::PrimitiveReader(GltfFile& file, Notes& notes) : file_(&file), notes_(&notes) {
+  const std::optional<JsonView> used = file.root().find("extensionsUsed");
+  for (std::size_t i = 0; used && i < used->size(); ++i)
+    quantised_ = quantised_ || used->at(i).string() == "KHR_mesh_quantization";
+}
 
 const Elements* PrimitiveReader::attribute(const JsonView& attributes, const char* name,
                                            std::initializer_list<std::size_t> widths, Integers integers,
@@ -52,7 +70,11 @@ const Elements* PrimitiveReader::attribute(const JsonView& attributes, const cha
   if (!reference) return nullptr;
   const std::size_t accessor = reference->index(file_->count("accessors"), "accessors");
   Cached& cached = cache_[name];
-  if (cached.elements.count == 0 || cached.accessor != accessor) {
+  if (draco_ && draco_->has(name)) {
+    cached.elements = draco_->elements(name, elementType(*file_, *reference, widths, integers));
+    cached.accessor = kNoAccessor;
+    charge(cached.elements.count, *reference);
+  } else if (cached.elements.count == 0 || cached.accessor != accessor) {
     cached.elements = readElements(*file_, *reference, widths, integers);
     cached.accessor = accessor;
     charge(cached.elements.count, *reference);
@@ -64,6 +86,11 @@ const Elements* PrimitiveReader::attribute(const JsonView& attributes, const cha
 }
 
 std::vector<std::uint32_t> PrimitiveReader::triangleCorners(const JsonView& primitive, std::size_t vertexCount) {
+  if (draco_) {
+    std::vector<std::uint32_t> corners = draco_->corners();
+    charge(corners.size(), primitive);
+    return corners;
+  }
   std::vector<std::uint32_t> order;
   if (const std::optional<JsonView> indices = primitive.find("indices")) {
     order = readIndices(*file_, *indices);
@@ -106,31 +133,49 @@ void PrimitiveReader::charge(std::size_t elements, const JsonView& user) {
   }
 }
 
-std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive) {
+std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const Pose& pose) {
   const std::size_t mode = primitive.unsignedInteger("mode", kTriangles);
   if (mode > kTriangleFan) primitive.at("mode").refuse(fmt::format("is {}; expected 0 to 6", mode));
-  if (const auto draco = primitive.extension("KHR_draco_mesh_compression")) {
-    draco->refuse("is compressed, which is not supported");
-  }
   if (mode < kTriangles) {
     ++points_;
     return std::nullopt;
   }
+  draco_.reset();
+  if (const auto packed = primitive.extension("KHR_draco_mesh_compression"))
+    draco_ = std::make_unique<DracoMesh>(*file_, primitive, *packed);
   const JsonView attributes = primitive.at("attributes");
   attributes.at("POSITION");
-  const Elements& positions = *attribute(attributes, "POSITION", {3}, Integers::none, 0);
-  const std::size_t count = positions.count;
-  const Elements* normals = attribute(attributes, "NORMAL", {3}, Integers::none, count);
-  const Elements* uvs[2] = {attribute(attributes, "TEXCOORD_0", {2}, Integers::normalised, count),
-                            attribute(attributes, "TEXCOORD_1", {2}, Integers::normalised, count)};
+  const Integers placed = quantised_ ? Integers::any : Integers::none;
+  const Integers turned = quantised_ ? Integers::normalised : Integers::none;
+  const Integers mapped = quantised_ ? Integers::any : Integers::normalised;
+  const Elements* positions = attribute(attributes, "POSITION", {3}, placed, 0);
+  const std::size_t count = positions->count;
+  const Elements* normals = attribute(attributes, "NORMAL", {3}, turned, count);
+  // Without normals the file's tangents do not count (glTF 2.0, Meshes).
+  const Elements* tangents = normals ? attribute(attributes, "TANGENT", {4}, turned, count) : nullptr;
+  const Elements* uvs[2] = {attribute(attributes, "TEXCOORD_0", {2}, mapped, count),
+                            attribute(attributes, "TEXCOORD_1", {2}, mapped, count)};
   const Elements* colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::normalised, count);
+  Elements movedPositions, movedNormals, movedTangents;
+  if (pose.moves()) {
+    charge(count * (2 + pose.weights.size()), primitive);
+    const auto copied = [](const Elements*& from, Elements& to) {
+      if (from) to = *from;
+      if (from) from = &to;
+    };
+    copied(positions, movedPositions);
+    copied(normals, movedNormals);
+    copied(tangents, movedTangents);
+    applyPose(*file_, primitive, pose, quantised_, movedPositions, normals ? &movedNormals : nullptr,
+              tangents ? &movedTangents : nullptr, unbound_);
+  }
   const std::vector<std::uint32_t> corners = triangleCorners(primitive, count);
   if (compact_.size() < count) compact_.resize(count, kUnused);
 
   Primitive result;
   const auto vertexAt = [&](std::uint32_t i, glm::vec3 flat) {
     Vertex vertex;
-    vertex.position = vec3At(positions, i);
+    vertex.position = vec3At(*positions, i);
     vertex.normal = flat;
     if (normals) {
       const glm::dvec3 normal(vec3At(*normals, i));
@@ -141,6 +186,7 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive) {
         ++repairedNormals_;
       }
     }
+    if (tangents) vertex.tangent = tangentAt(*tangents, i, vertex.normal);
     for (int set = 0; set < 2; ++set) vertex.uv[set] = uvs[set] ? uvAt(*uvs[set], i, repairedValues_) : glm::vec2(0.0f);
     if (colours) {
       for (std::size_t c = 0; c < colours->width; ++c) {
@@ -152,8 +198,8 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive) {
   result.indices.reserve(corners.size());
   for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
     const std::uint32_t corner[3] = {corners[t], corners[t + 1], corners[t + 2]};
-    const glm::vec3 a = vec3At(positions, corner[0]), b = vec3At(positions, corner[1]),
-                    c = vec3At(positions, corner[2]);
+    const glm::vec3 a = vec3At(*positions, corner[0]), b = vec3At(*positions, corner[1]),
+                    c = vec3At(*positions, corner[2]);
     if (!finite(a) || !finite(b) || !finite(c)) {
       ++nonFinite_;
       continue;
@@ -199,6 +245,7 @@ void PrimitiveReader::noteCounts() {
   note(nonFinite_, "triangles have a position that is not finite and are left out");
   note(degenerate_, "triangles have no area and are left out");
   note(repairedNormals_, "normals have no direction and are replaced by the triangle's");
+  note(unbound_, "vertices of skins have no weight and follow their first joint");
   note(repairedValues_, "vertex colours or texture coordinates are out of range and are clamped");
 }
 
@@ -206,6 +253,8 @@ Primitive withFlippedWinding(Primitive primitive) {
   for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
     std::swap(primitive.indices[t + 1], primitive.indices[t + 2]);
   }
+  // Mirrored, a right-handed frame is a left-handed one.
+  for (Vertex& vertex : primitive.vertices) vertex.tangent.y = -vertex.tangent.y;
   return primitive;
 }
 

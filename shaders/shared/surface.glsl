@@ -16,6 +16,31 @@ struct Surface {
   float ior;           // >= 1; 1 reflects nothing
 };
 
+// A unit tangent and its handedness (1 or -1) in two numbers: folded onto an octahedron, the sign of y is the hand's.
+PLD_FN vec2 packTangent(vec3 tangent, float handedness) {
+  float size = abs(tangent.x) + abs(tangent.y) + abs(tangent.z);
+  float x = tangent.x / size, y = tangent.y / size;
+  vec2 folded = vec2(x, y);
+  if (tangent.z < 0.0f) {
+    folded.x = (1.0f - abs(y)) * (x < 0.0f ? -1.0f : 1.0f);
+    folded.y = (1.0f - abs(x)) * (y < 0.0f ? -1.0f : 1.0f);
+  }
+  return vec2(folded.x, (folded.y + 2.0f) * handedness);
+}
+
+// xyz unit, w handedness; all 0 for what is no tangent.
+PLD_FN vec4 unpackTangent(vec2 packed_) {
+  if (packed_.y == 0.0f) return vec4(0.0f);
+  float x = packed_.x, y = abs(packed_.y) - 2.0f;
+  float z = 1.0f - abs(x) - abs(y);
+  vec3 tangent = vec3(x, y, z);
+  if (z < 0.0f) {
+    tangent.x = (1.0f - abs(y)) * (x < 0.0f ? -1.0f : 1.0f);
+    tangent.y = (1.0f - abs(x)) * (y < 0.0f ? -1.0f : 1.0f);
+  }
+  return vec4(normalize(tangent), packed_.y < 0.0f ? -1.0f : 1.0f);
+}
+
 // Reflectance of a smooth dielectric for unpolarised light. [0,1]
 //   cosOutside  |cosine| between the normal and the direction outside the medium, [0,1]
 //   ior         index inside over index outside, >= 1

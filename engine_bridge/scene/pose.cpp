@@ -1,0 +1,164 @@
+#include "engine_bridge/scene/pose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid::gltf {
+
+namespace {
+
+constexpr double kMostWeight = 1e6;
+
+std::vector<double> weightsOf(const JsonView& node, const JsonView& mesh) {
+  const std::optional<JsonView> own = node.find("weights");
+  const std::optional<JsonView> source = own ? own : mesh.find("weights");
+  std::vector<double> weights = source ? source->numbers(source->size()) : std::vector<double>{};
+  for (const double weight : weights)
+    if (!(std::abs(weight) <= kMostWeight))
+      source->refuse(fmt::format("holds {:g}; expected magnitudes up to {:g}", weight, kMostWeight));
+  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; })) weights.clear();
+  return weights;
+}
+
+glm::dvec3 vec3At(const Elements& elements, std::size_t i) {
+  return {elements.at(i, 0), elements.at(i, 1), elements.at(i, 2)};
+}
+
+void store(Elements& elements, std::size_t i, glm::dvec3 value) {
+  for (int c = 0; c < 3; ++c)
+    elements.values[i * elements.width + static_cast<std::size_t>(c)] = static_cast<float>(value[c]);
+}
+
+void morph(GltfFile& file, const JsonView& primitive, const std::vector<double>& weights, bool quantised,
+           Elements& positions, Elements* normals, Elements* tangents) {
+  const JsonView targets = primitive.at("targets");
+  if (targets.size() != weights.size())
+    targets.refuse(fmt::format("are {}; the weights are {}", targets.size(), weights.size()));
+  const auto add = [&](const JsonView& target, const char* name, double weight, Integers integers, Elements* base) {
+    const std::optional<JsonView> reference = target.find(name);
+    if (!reference || !base) return;
+    const Elements moved = readElements(file, *reference, {3}, integers);
+    if (moved.count != base->count)
+      reference->refuse(fmt::format("has {} elements; expected {}, as POSITION has", moved.count, base->count));
+    for (std::size_t i = 0; i < base->count; ++i) store(*base, i, vec3At(*base, i) + weight * vec3At(moved, i));
+  };
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0.0) continue;
+    const JsonView target = targets.at(k);
+    const Integers units = quantised ? Integers::normalised : Integers::none;
+    add(target, "POSITION", weights[k], quantised ? Integers::any : Integers::none, &positions);
+    add(target, "NORMAL", weights[k], units, normals);
+    add(target, "TANGENT", weights[k], units, tangents);
+  }
+}
+
+// The mean of a vertex's joints, by their weights.
+struct Blend {
+  glm::dmat4 sum{0.0};
+  double weight = 0;
+  std::size_t first = 0;
+};
+
+glm::dmat3 cofactors(const glm::dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+void bend(GltfFile& file, const JsonView& primitive, const std::vector<glm::dmat4>& joints, Elements& positions,
+          Elements* normals, Elements* tangents, std::size_t& unbound) {
+  const JsonView attributes = primitive.at("attributes");
+  std::vector<Blend> blends(positions.count);
+  attributes.at("JOINTS_0");
+  for (int set = 0;; ++set) {
+    const std::string jointName = fmt::format("JOINTS_{}", set), weightName = fmt::format("WEIGHTS_{}", set);
+    const std::optional<JsonView> reference = attributes.find(jointName.c_str());
+    if (!reference) break;
+    const Elements indices = readElements(file, *reference, {4}, Integers::any);
+    const Elements weights = readElements(file, attributes.at(weightName.c_str()), {4}, Integers::normalised);
+    if (indices.count != positions.count || weights.count != positions.count)
+      reference->refuse(fmt::format("has {} elements and {} weights; expected {}, as POSITION has", indices.count,
+                                    weights.count, positions.count));
+    for (std::size_t i = 0; i < positions.count; ++i) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto index = static_cast<double>(indices.at(i, c)), weight = static_cast<double>(weights.at(i, c));
+        if (!(index >= 0.0 && index < static_cast<double>(joints.size())))
+          reference->refuse(fmt::format("name joint {:g}; expected indices below {}", index, joints.size()));
+        if (set == 0 && c == 0) blends[i].first = static_cast<std::size_t>(index);
+        if (!(weight > 0.0) || !std::isfinite(weight)) continue;
+        blends[i].sum += weight * joints[static_cast<std::size_t>(index)];
+        blends[i].weight += weight;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < positions.count; ++i) {
+    const Blend& blend = blends[i];
+    const bool bound = blend.weight > 0.0;
+    unbound += bound ? 0 : 1;
+    const glm::dmat4 moved = bound ? blend.sum / blend.weight : joints[blend.first];
+    store(positions, i, glm::dvec3(moved * glm::dvec4(vec3At(positions, i), 1.0)));
+    const glm::dmat3 linear(moved);
+    const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    const auto turn = [&](Elements* elements, const glm::dmat3& by) {
+      if (!elements) return;
+      const glm::dvec3 turned = by * vec3At(*elements, i);
+      const double length = glm::length(turned);
+      store(*elements, i, length > 0.0 ? turned / length : glm::dvec3(0.0));
+    };
+    turn(normals, side * cofactors(linear));
+    turn(tangents, linear);
+  }
+}
+
+}  // namespace
+
+PoseReader::PoseReader(GltfFile& file, const std::vector<PlacedNode>& placed, double metresPerUnit)
+    : file_(&file), metresPerUnit_(metresPerUnit) {
+  for (const PlacedNode& node : placed) worldOf_.emplace(node.index, &node.worldFromObject);
+}
+
+const std::vector<glm::dmat4>& PoseReader::jointsOf(const JsonView& node) {
+  const JsonView reference = node.at("skin");
+  const std::size_t index = reference.index(file_->count("skins"), "skins");
+  if (const auto found = skins_.find(index); found != skins_.end()) return found->second;
+  const JsonView skin = file_->item("skins", index);
+  const JsonView joints = skin.at("joints");
+  std::optional<Elements> inverse;
+  if (const std::optional<JsonView> matrices = skin.find("inverseBindMatrices")) {
+    inverse = readElements(*file_, *matrices, {16}, Integers::none);
+    if (inverse->count < joints.size())
+      matrices->refuse(fmt::format("are {}; the skin has {} joints", inverse->count, joints.size()));
+    for (const float value : inverse->values)
+      if (!std::isfinite(value)) matrices->refuse("hold a value that is not finite");
+  }
+  if (joints.size() == 0) joints.refuse("are none; expected at least one");
+  std::vector<glm::dmat4> result;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const std::size_t at = joints.at(k).index(file_->count("nodes"), "nodes");
+    const auto world = worldOf_.find(at);
+    if (world == worldOf_.end()) joints.at(k).refuse(fmt::format("is {}, a node that the scene does not hold", at));
+    glm::dmat4 unitsFromMetres(1.0 / metresPerUnit_);
+    unitsFromMetres[3][3] = 1.0;
+    glm::dmat4 bind(1.0);
+    for (int column = 0; inverse && column < 4; ++column)
+      for (int row = 0; row < 3; ++row)
+        bind[column][row] = static_cast<double>(inverse->at(k, static_cast<std::size_t>(column * 4 + row)));
+    result.push_back(unitsFromMetres * *world->second * bind);
+  }
+  return skins_.emplace(index, std::move(result)).first->second;
+}
+
+Pose PoseReader::of(const JsonView& node, const JsonView& mesh) {
+  Pose pose;
+  pose.weights = weightsOf(node, mesh);
+  if (node.find("skin")) pose.joints = jointsOf(node);
+  return pose;
+}
+
+void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, Elements& positions,
+               Elements* normals, Elements* tangents, std::size_t& unbound) {
+  if (!pose.weights.empty()) morph(file, primitive, pose.weights, quantised, positions, normals, tangents);
+  if (!pose.joints.empty()) bend(file, primitive, pose.joints, positions, normals, tangents, unbound);
+}
+
+}  // namespace pellucid::gltf

@@ -1,0 +1,45 @@
+// Skins and morph targets, in the pose that the file stores: nodes where their transforms put them, weights of the
+// node, else of the mesh. Animations are not played.
+#pragma once
+#include <glm/glm.hpp>
+#include <map>
+#include <vector>
+
+#include "engine_bridge/scene/accessor.h"
+#include "engine_bridge/scene/gltf_file.h"
+#include "engine_bridge/scene/nodes.h"
+
+namespace pellucid::gltf {
+
+struct Pose {
+  std::vector<double> weights;     // one a morph target; empty where nothing is morphed
+  std::vector<glm::dmat4> joints;  // the file's world from the mesh's bind pose, in its units; empty without a skin
+  bool moves() const { return !weights.empty() || !joints.empty(); }
+};
+
+// The poses of one file's nodes.
+class PoseReader {
+ public:
+  //   placed  outlives this
+  PoseReader(GltfFile& file, const std::vector<PlacedNode>& placed, double metresPerUnit);
+  // Of the mesh that a node draws. Throws InputError: a joint that is no node or stands in no scene, matrices that are
+  // damaged, weights that are not finite.
+  Pose of(const JsonView& node, const JsonView& mesh);
+
+ private:
+  const std::vector<glm::dmat4>& jointsOf(const JsonView& node);
+
+  GltfFile* file_;
+  double metresPerUnit_;
+  std::map<std::size_t, const glm::dmat4*> worldOf_;
+  std::map<std::size_t, std::vector<glm::dmat4>> skins_;
+};
+
+// Moves a primitive's vertices: morph targets first, then the skin. `normals` and `tangents` may be null.
+// Throws InputError: targets or weights that are damaged, joints beyond the skin.
+//   quantised  KHR_mesh_quantization is used
+//   unbound    counts vertices without any weight, which follow their first joint
+void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, Elements& positions,
+               Elements* normals, Elements* tangents, std::size_t& unbound);
+
+}  // namespace pellucid::gltf

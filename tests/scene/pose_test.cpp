@@ -1,0 +1,106 @@
+// Skins and morph targets in the pose that the file stores.
+#include <cmath>
+
+#include "tests/scene/builder.h"
+
+namespace pellucid::test {
+namespace {
+
+const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+const std::vector<float> kUp = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+
+TEST(Morph, WeightsOfTheNodeThenOfTheMesh) {
+  Builder builder;
+  Json& primitive =
+      builder.mesh({{"POSITION", builder.floats(kTriangle, "VEC3", 3)}, {"NORMAL", builder.floats(kUp, "VEC3", 3)}});
+  primitive["targets"] = {{{"POSITION", builder.floats({0, 0, 2, 0, 0, 2, 0, 0, 2}, "VEC3", 3)}},
+                          {{"POSITION", builder.floats({4, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3", 3)},
+                           {"NORMAL", builder.floats({1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3", 3)}}};
+  const Scene rest = builder.load();
+  EXPECT_EQ(rest.primitives.at(0).vertices[0].position, glm::vec3(0.0f));
+  builder.json["meshes"][0]["weights"] = {0.5, 0};
+  builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {0, 1}}});
+  const Scene scene = builder.load();
+  ASSERT_EQ(scene.instances.size(), 2u);
+  const auto vertex = [&](std::size_t instance) {
+    return scene.primitives.at(static_cast<std::size_t>(scene.instances[instance].primitive)).vertices[0];
+  };
+  EXPECT_EQ(vertex(0).position, glm::vec3(0, 0, 1));
+  EXPECT_EQ(vertex(0).normal, glm::vec3(0, 0, 1));
+  EXPECT_EQ(vertex(1).position, glm::vec3(4, 0, 0));
+  EXPECT_LT(glm::length(vertex(1).normal - glm::normalize(glm::vec3(1, 0, 1))), 1e-6f);
+  builder.json["nodes"][1]["weights"] = {1};
+  expectRefusal(refusalOf(builder), 3, {"targets", "are 2", "are 1"});
+  builder.json["nodes"][1]["weights"] = {1, 1};
+  builder.json.erase("buffers");
+  builder.json["meshes"][0]["primitives"][0]["targets"][0]["POSITION"] = builder.floats({0, 0, 0}, "VEC3", 3);
+  expectRefusal(refusalOf(builder), 3, {"targets[0]", "1 elements", "expected 3"});
+}
+
+// Two joints: the first stands, the second is turned a quarter about x and moved. The third vertex is half of each.
+Builder skinned() {
+  Builder builder;
+  builder.mesh(
+      {{"POSITION", builder.floats(kTriangle, "VEC3", 3)},
+       {"NORMAL", builder.floats(kUp, "VEC3", 3)},
+       {"JOINTS_0", builder.accessor(std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 4)},
+       {"WEIGHTS_0", builder.accessor(std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 120, 120, 0, 0}, 5121,
+                                      "VEC4", 4, true)}});
+  builder.json["nodes"][0]["skin"] = 0;
+  builder.json["nodes"][0]["translation"] = {100, 100, 100};  // does not count
+  const double half = std::sqrt(0.5);
+  builder.json["nodes"].push_back(Json::object());
+  builder.json["nodes"].push_back({{"rotation", {half, 0, 0, half}}, {"translation", {0, 0, 5}}});
+  std::vector<float> inverse(32, 0.0f);
+  for (const std::size_t i : {0, 5, 10, 15, 16, 21, 26, 31}) inverse[i] = 1.0f;
+  inverse[16 + 12] = -1.0f;  // the second joint was bound at x = 1
+  builder.json["skins"].push_back({{"joints", {1, 2}}, {"inverseBindMatrices", builder.floats(inverse, "MAT4", 16)}});
+  return builder;
+}
+
+TEST(Skin, JointsPlaceTheVertices) {
+  SceneOptions centimetres;
+  centimetres.metresPerUnit = 0.01;
+  for (const SceneOptions& options : {SceneOptions{}, centimetres}) {
+    Builder builder = skinned();
+    const Scene scene = builder.load(options);
+    EXPECT_TRUE(scene.notes.empty());
+    const Primitive& primitive = scene.primitives.at(0);
+    const glm::dmat4& world = scene.instances.at(0).worldFromObject;
+    const auto at = [&](std::size_t i) {
+      return glm::vec3(world * glm::dvec4(glm::dvec3(primitive.vertices[i].position), 1.0) / options.metresPerUnit);
+    };
+    EXPECT_LT(glm::length(at(0) - glm::vec3(0, 0, 0)), 1e-5f);
+    EXPECT_LT(glm::length(at(1) - glm::vec3(0, 0, 5)), 1e-5f);
+    // Half of (0,1,0) and of (-1,0,6): y turns to z.
+    EXPECT_LT(glm::length(at(2) - glm::vec3(-0.5f, 0.5f, 3)), 1e-5f);
+    EXPECT_LT(glm::length(primitive.vertices[1].normal - glm::vec3(0, -1, 0)), 1e-5f);
+  }
+}
+
+TEST(Skin, DamageIsRefused) {
+  const auto changed = [](const std::function<void(Builder&)>& change) {
+    Builder builder = skinned();
+    change(builder);
+    return refusalOf(builder);
+  };
+  expectRefusal(changed([](Builder& b) { b.json["skins"][0]["joints"] = {1}; }), 3, {"JOINTS_0", "joint 1", "below 1"});
+  expectRefusal(changed([](Builder& b) { b.json["skins"][0]["joints"] = {1, 9}; }), 3, {"skins[0].joints[1]", "9"});
+  expectRefusal(changed([](Builder& b) {
+                  b.json["skins"][0]["joints"] = {1, 2, 2};
+                }),
+                3, {"inverseBindMatrices", "are 2", "3 joints"});
+  expectRefusal(changed([](Builder& b) {
+                  b.json["scenes"] = {{{"nodes", {0, 1}}}};
+                }),
+                3, {"joints[1]", "the scene does not hold"});
+  expectRefusal(changed([](Builder& b) { b.json["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0"); }), 3,
+                {"WEIGHTS_0"});
+  Builder unbound = skinned();
+  const int weights = unbound.floats(std::vector<float>(12, 0.0f), "VEC4", 4);
+  unbound.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = weights;
+  EXPECT_TRUE(noted(unbound.load(), "3 vertices of skins have no weight"));
+}
+
+}  // namespace
+}  // namespace pellucid::test
