@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineInputPart.h>
 #include <OpenEXR/ImfDeepScanLineOutputPart.h>
+#include <OpenEXR/ImfDeepTiledInputPart.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
@@ -11,6 +12,7 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <new>
@@ -18,6 +20,7 @@
 #include <stdexcept>
 
 #include "gbuffer/atomic_file.h"
+#include "gbuffer/deep_line.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/exr_header.h"
 #include "gbuffer/exr_layout.h"
@@ -28,6 +31,7 @@ namespace {
 
 // Rows whose sample counts are looked at together: as many as keep two cores busy on one-line chunks.
 constexpr int kBandRows = 64;
+constexpr std::uint64_t kChunkHead = 28;  // before the packed counts of a line
 // No byte of a deflated stream expands further.
 constexpr std::uint64_t kLargestExpansion = 1032;
 
@@ -82,6 +86,24 @@ struct DeepMemory {
   }
 };
 
+// How to decode the lines of a part ourselves; nothing for compressions that are left to OpenEXR.
+std::optional<DeepLineFormat> formatOf(const exr::Header& header, const std::vector<std::string>& names) {
+  if (header.compression() != exr::ZIPS_COMPRESSION && header.compression() != exr::NO_COMPRESSION) return std::nullopt;
+  DeepLineFormat format;
+  format.zips = header.compression() == exr::ZIPS_COMPRESSION;
+  format.width = static_cast<std::size_t>(windowOf(header.dataWindow()).width());
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+    const exr::PixelType type = it.channel().type;
+    format.types.push_back(type == exr::UINT   ? PixelType::uint32
+                           : type == exr::HALF ? PixelType::half
+                                               : PixelType::float32);
+    format.size.push_back(bytesOf(format.types.back()));
+    const auto wanted = std::find(names.begin(), names.end(), it.name());
+    format.wanted.push_back(wanted == names.end() ? -1 : static_cast<int>(wanted - names.begin()));
+  }
+  return format;
+}
+
 }  // namespace
 
 struct DeepReader::Impl {
@@ -90,9 +112,120 @@ struct DeepReader::Impl {
   ExrSource source;
   std::optional<exr::MultiPartInputFile> file;
   std::optional<exr::DeepScanLineInputPart> part;
+  std::optional<exr::DeepTiledInputPart> tiles;
   Window display, data;
   DeepMemory memory;
+  DeepRows tileRow;  // of tiled files, the row of tiles read last
+  // Of scanline files whose lines we decode ourselves: the lines read last, from row linesFrom on.
+  std::optional<DeepLineFormat> format;
+  std::vector<DeepLine> lines;
+  int linesFrom = 0;
   Impl(const std::string& from, const std::vector<std::string>& channels) : path(from), names(channels), source(from) {}
+
+  // Memory for the samples that rows.offsets speak of.
+  void makeRoom(DeepRows& rows) {
+    const std::uint64_t samples = rows.offsets.back();
+    if (samples > source.size() * kLargestExpansion)
+      throw InputError(fmt::format("{}: damaged: rows {} to {} claim {} samples, more than {} bytes can hold", path,
+                                   rows.window.y0, rows.window.y1 - 1, samples, source.size()));
+    rows.channels.assign(names.size(), {});
+    for (std::vector<float>& channel : rows.channels) channel.resize(samples);
+  }
+  void pointInto(DeepRows& rows) {
+    memory.pointInto(
+        rows.offsets, static_cast<std::size_t>(rows.window.width()) * static_cast<std::size_t>(rows.window.height()),
+        rows.channels);
+  }
+
+  [[noreturn]] void damagedLine(int y) const {
+    throw InputError(fmt::format("{}: damaged: row {} does not unpack", path, y));
+  }
+
+  void readLine(int y, DeepLine& line) {
+    std::uint64_t size = line.chunk.size();
+    part->rawPixelData(y, line.chunk.data(), size);
+    if (size > source.size() + kChunkHead) damagedLine(y);
+    const bool read = size <= line.chunk.size();
+    line.chunk.resize(size);
+    if (!read) part->rawPixelData(y, line.chunk.data(), size);
+    line.counts.clear();
+  }
+
+  // Makes `lines` begin at row y0 and hold rows up to y1, with their counts.
+  void readLines(int y0, int y1) {
+    const auto kept = static_cast<std::ptrdiff_t>(lines.size()) + linesFrom - y0;
+    if (y0 < linesFrom || kept <= 0)
+      lines.clear();
+    else
+      lines.erase(lines.begin(), lines.end() - kept);
+    linesFrom = y0;
+    while (lines.size() < static_cast<std::size_t>(y1 - y0)) {
+      const std::size_t guess = lines.empty() ? 0 : lines.back().chunk.size() * 5 / 4;
+      lines.emplace_back();
+      lines.back().chunk.resize(guess);
+      readLine(y0 + static_cast<int>(lines.size()) - 1, lines.back());
+    }
+    tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t i) {
+      if (lines[i].counts.empty() && !lines[i].readCounts(*format)) damagedLine(y0 + static_cast<int>(i));
+    });
+  }
+
+  DeepRows rowsOfLines(int y0, int y1, std::uint64_t most) {
+    readLines(y0, most == UINT64_MAX ? y1 : std::min(y1, y0 + kBandRows));
+    DeepRows rows;
+    rows.offsets.assign(1, 0);
+    std::vector<std::uint64_t> first{0};
+    for (const DeepLine& line : lines) {
+      if (static_cast<int>(first.size()) - 1 == y1 - y0) break;
+      if (first.size() > 1 && first.back() + line.samples > most) break;
+      for (const std::uint32_t count : line.counts) rows.offsets.push_back(rows.offsets.back() + count);
+      first.push_back(rows.offsets.back());
+    }
+    rows.window = {data.x0, y0, data.x1, y0 + static_cast<int>(first.size()) - 1};
+    makeRoom(rows);
+    tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t i) {
+      std::vector<float*> channels;
+      for (std::vector<float>& channel : rows.channels) channels.push_back(channel.data() + first[i]);
+      if (!lines[i].readSamples(*format, channels)) damagedLine(y0 + static_cast<int>(i));
+    });
+    return rows;
+  }
+
+  // Fills tileRow with the row of tiles that holds row y.
+  void readTileRow(int y) {
+    const int height = static_cast<int>(tiles->tileYSize()), row = (y - data.y0) / height;
+    tileRow = {};
+    tileRow.window = {data.x0, data.y0 + row * height, data.x1, std::min(data.y0 + (row + 1) * height, data.y1)};
+    const exr::DeepFrameBuffer frame = memory.frame(tileRow.window, names);
+    tiles->setFrameBuffer(frame);
+    tiles->readPixelSampleCounts(0, tiles->numXTiles(0) - 1, row, row, 0, 0);
+    tileRow.offsets.assign(1, 0);
+    for (const std::uint32_t count : memory.counts) tileRow.offsets.push_back(tileRow.offsets.back() + count);
+    makeRoom(tileRow);
+    pointInto(tileRow);
+    if (!names.empty()) tiles->readTiles(0, tiles->numXTiles(0) - 1, row, row, 0, 0);
+  }
+
+  // Rows of tileRow from y0 on.
+  DeepRows rowsOfTiles(int y0, int y1, std::uint64_t most) {
+    if (tileRow.offsets.empty() || y0 < tileRow.window.y0 || y0 >= tileRow.window.y1) readTileRow(y0);
+    const auto width = static_cast<std::size_t>(data.width());
+    const auto first = static_cast<std::size_t>(y0 - tileRow.window.y0) * width;
+    const std::uint64_t begin = tileRow.offsets[first];
+    int end = y0 + 1;
+    const auto endOf = [&](int row) {
+      return tileRow.offsets[static_cast<std::size_t>(row - tileRow.window.y0) * width];
+    };
+    while (end < std::min(y1, tileRow.window.y1) && endOf(end + 1) - begin <= most) ++end;
+    DeepRows rows;
+    rows.window = {data.x0, y0, data.x1, end};
+    for (std::size_t i = first; i <= first + width * static_cast<std::size_t>(end - y0); ++i)
+      rows.offsets.push_back(tileRow.offsets[i] - begin);
+    for (const std::vector<float>& channel : tileRow.channels)
+      rows.channels.emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 channel.begin() + static_cast<std::ptrdiff_t>(begin + rows.offsets.back()));
+    return rows;
+  }
 };
 
 DeepReader::DeepReader(const std::string& path, int part, const std::vector<std::string>& channels)
@@ -101,9 +234,8 @@ DeepReader::DeepReader(const std::string& path, int part, const std::vector<std:
   if (part < 0 || part >= static_cast<int>(layout.parts.size()))
     throw InputError(fmt::format("{}: no part {}: found {} parts", path, part, layout.parts.size()));
   const ExrPartLayout& chosen = layout.parts[static_cast<std::size_t>(part)];
-  if (!chosen.deep || chosen.tiled)
-    throw InputError(fmt::format("{}: part {}: found {}, expected deep scanlines", path, part,
-                                 chosen.deep ? "deep tiles" : "a flat picture"));
+  if (!chosen.deep)
+    throw InputError(fmt::format("{}: part {}: found a flat picture, expected deep samples", path, part));
   reading(path, [&] {
     impl_->file.emplace(impl_->source, exrThreads(), false);
     if (!impl_->file->partComplete(part))
@@ -114,7 +246,11 @@ DeepReader::DeepReader(const std::string& path, int part, const std::vector<std:
         throw MeaningError(fmt::format("{}: part {}: found no channel {}", path, part, name));
     impl_->display = windowOf(header.displayWindow());
     impl_->data = windowOf(header.dataWindow());
-    impl_->part.emplace(*impl_->file, part);
+    if (chosen.tiled)
+      impl_->tiles.emplace(*impl_->file, part);
+    else
+      impl_->part.emplace(*impl_->file, part);
+    if (!chosen.tiled) impl_->format = formatOf(header, channels);
   });
 }
 
@@ -130,6 +266,8 @@ const Window& DeepReader::display() const {
 DeepRows DeepReader::read(int y0, int y1, std::uint64_t most) {
   Impl& in = *impl_;
   if (y0 < in.data.y0 || y1 > in.data.y1 || y0 >= y1) throw std::logic_error("DeepReader: rows outside the file");
+  if (in.tiles) return reading(in.path, [&] { return in.rowsOfTiles(y0, y1, most); });
+  if (in.format) return reading(in.path, [&] { return in.rowsOfLines(y0, y1, most); });
   DeepRows rows;
   return reading(in.path, [&] {
     Window window{in.data.x0, y0, in.data.x1, most == UINT64_MAX ? y1 : std::min(y1, y0 + kBandRows)};
@@ -150,13 +288,8 @@ DeepRows DeepReader::read(int y0, int y1, std::uint64_t most) {
     }
     window.y1 = end;
     rows.window = window;
-    const std::uint64_t samples = rows.offsets.back();
-    if (samples > in.source.size() * kLargestExpansion)
-      throw InputError(fmt::format("{}: damaged: rows {} to {} claim {} samples, more than {} bytes can hold", in.path,
-                                   window.y0, window.y1 - 1, samples, in.source.size()));
-    rows.channels.assign(in.names.size(), {});
-    for (std::vector<float>& channel : rows.channels) channel.resize(samples);
-    in.memory.pointInto(rows.offsets, width * static_cast<std::size_t>(window.height()), rows.channels);
+    in.makeRoom(rows);
+    in.pointInto(rows);
     if (!in.names.empty()) in.part->readPixels(window.y0, window.y1 - 1);
     return std::move(rows);
   });

@@ -1,4 +1,4 @@
-// Deep EXR, a band of scanlines at a time: samples as stored, in any order, as floats.
+// Deep EXR, scanlines or tiles, a band of rows at a time: samples as stored, in any order, as floats.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -21,14 +21,14 @@ struct DeepRows {
 class DeepReader {
  public:
   // Opens the part and reads the named channels only; half and uint are converted to float. Throws InputError for what
-  // is missing, damaged or not deep scanlines, MeaningError for a channel that is not there.
+  // is missing, damaged or not deep, MeaningError for a channel that is not there.
   DeepReader(const std::string& path, int part, const std::vector<std::string>& channels);
   ~DeepReader();
 
   const Window& data() const;
   const Window& display() const;
   // Rows y0 <= y < y1 (display coordinates, inside the data window), or fewer of them, but one at least, so that at
-  // most `most` samples are held. Throws InputError for damage, ResourceError when memory runs out.
+  // most `most` samples are held (of tiled files a row of tiles besides). Throws InputError for damage, ResourceError when memory runs out.
   DeepRows read(int y0, int y1, std::uint64_t most = UINT64_MAX);
 
  private:

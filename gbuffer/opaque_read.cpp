@@ -7,6 +7,7 @@
 #include "gbuffer/depth.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/opaque_io.h"
+#include "gbuffer/part_camera.h"
 #include "gbuffer/pixel_rows.h"
 
 namespace pellucid {
@@ -36,26 +37,6 @@ double floatOf(const ExrPart& part, const char* name) {
   float number = 0;
   std::memcpy(&number, found->second.bytes.data(), sizeof number);
   return std::isfinite(number) && number > 0.0f ? static_cast<double>(number) : 0.0;
-}
-
-void readCamera(const ExrPart& part, double unit, OpaqueFile& file) {
-  const auto worldToCamera = matrixOf(part, "worldToCamera"), worldToNdc = matrixOf(part, "worldToNDC");
-  if (worldToCamera.has_value() != worldToNdc.has_value())
-    file.notes.push_back(fmt::format("found the attribute {} without {}, so no camera from the file",
-                                     worldToCamera ? "worldToCamera" : "worldToNDC",
-                                     worldToCamera ? "worldToNDC" : "worldToCamera"));
-  if (!worldToCamera || !worldToNdc) return;
-  try {
-    Camera camera = cameraFromExr(*worldToCamera, *worldToNdc, file.document.path);
-    camera.viewFromWorld[3] = glm::dvec4(glm::dvec3(camera.viewFromWorld[3]) * unit, 1.0);
-    if (camera.orthographic) camera.focal /= unit;
-    camera.rangeNear = unit * floatOf(part, "arnold/camera/near_clip");
-    camera.rangeFar = unit * floatOf(part, "arnold/camera/far_clip");
-    file.gbuffer.camera = camera;
-    if (camera.origin.find(',') != std::string::npos) file.notes.push_back("camera from " + camera.origin);
-  } catch (const MeaningError& error) {
-    file.notes.push_back(error.what());
-  }
 }
 
 void readBeauty(const BeautyChannels& beauty, OpaqueFile& file) {
@@ -144,6 +125,26 @@ void checkOptions(const ReadOptions& options) {
 }
 
 }  // namespace
+
+void readCamera(const ExrPart& part, double unit, OpaqueFile& file) {
+  const auto worldToCamera = matrixOf(part, "worldToCamera"), worldToNdc = matrixOf(part, "worldToNDC");
+  if (worldToCamera.has_value() != worldToNdc.has_value())
+    file.notes.push_back(fmt::format("found the attribute {} without {}, so no camera from the file",
+                                     worldToCamera ? "worldToCamera" : "worldToNDC",
+                                     worldToCamera ? "worldToNDC" : "worldToCamera"));
+  if (!worldToCamera || !worldToNdc) return;
+  try {
+    Camera camera = cameraFromExr(*worldToCamera, *worldToNdc, file.document.path);
+    camera.viewFromWorld[3] = glm::dvec4(glm::dvec3(camera.viewFromWorld[3]) * unit, 1.0);
+    if (camera.orthographic) camera.focal /= unit;
+    camera.rangeNear = unit * floatOf(part, "arnold/camera/near_clip");
+    camera.rangeFar = unit * floatOf(part, "arnold/camera/far_clip");
+    file.gbuffer.camera = camera;
+    if (camera.origin.find(',') != std::string::npos) file.notes.push_back("camera from " + camera.origin);
+  } catch (const MeaningError& error) {
+    file.notes.push_back(error.what());
+  }
+}
 
 OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, const Camera* camera) {
   checkOptions(options);
