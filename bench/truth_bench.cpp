@@ -49,7 +49,7 @@ void BM_Over(benchmark::State& state) {
   for (auto _ : state)
     for (int band = 0; band < kBands; ++band) compositeSorted(lists, kBand, veil);
 }
-BENCHMARK(BM_Over)->RangeMultiplier(4)->Range(1, 256)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_Over)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void BM_Weighted(benchmark::State& state) {
   const FragmentLists lists = listsOf(kBand, static_cast<std::uint64_t>(state.range(0)));
@@ -60,7 +60,36 @@ void BM_Weighted(benchmark::State& state) {
       benchmark::DoNotOptimize(resolve(planes, {}));
     }
 }
-BENCHMARK(BM_Weighted)->RangeMultiplier(4)->Range(1, 256)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_Weighted)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Cost against layers, one picture of 64 x 64: a curve per method and its fit.
+constexpr Window kSmall{0, 0, 64, 64};
+
+void curve(benchmark::State& state, const std::string& name) {
+  const FragmentLists lists = listsOf(kSmall, static_cast<std::uint64_t>(state.range(0)));
+  Veil veil(kSmall.width(), kSmall.height());
+  const std::optional<ChosenMethod> method = chooseMethod(name);
+  const MethodChoice choice{0, {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f}, shading::PLD_NORMALISE_SPECTRAL};
+  for (auto _ : state)
+    if (method)
+      compositeBy(*method, choice, lists, kSmall, veil);
+    else
+      compositeSorted(lists, kSmall, veil);
+  state.SetComplexityN(state.range(0));
+}
+
+void registerCurves() {
+  std::vector<std::string> names{"over"};
+  for (const Method& method : methods()) names.push_back(method.name);
+  for (const std::string& name : names)
+    benchmark::RegisterBenchmark(("Layers/" + name).c_str(),
+                                 [name](benchmark::State& state) { curve(state, name); })
+        ->RangeMultiplier(4)
+        ->Range(1, 1024)
+        ->Complexity(name == "over" ? benchmark::oNLogN : benchmark::oN)
+        ->Unit(benchmark::kMicrosecond)
+        ->UseRealTime();
+}
 
 // 1920 x 1080, float, unsorted.
 void BM_FlattenDeep(benchmark::State& state) {
@@ -91,6 +120,17 @@ void BM_FlattenDeep(benchmark::State& state) {
 BENCHMARK(BM_FlattenDeep)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(2);
 
 }  // namespace
+
+void registerLayerCurves() {
+  registerCurves();
+}
+
 }  // namespace pellucid
 
-BENCHMARK_MAIN();
+int main(int count, char** arguments) {
+  pellucid::registerLayerCurves();
+  benchmark::Initialize(&count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -22,6 +22,11 @@ struct LookupSettings {
   bool exact = false;
 };
 
+// Whether the pixel's layers show another part of the backdrop than its own.
+inline bool scattersAt(const OitPlanes& planes, int x, int y) {
+  return planes.scatters() && (planes.refraction.at(x, y).z > 0.0f || planes.refraction.at(x, y).w > 0.0f);
+}
+
 class SpreadPyramid;
 
 // The sum of a gather. Nothing passed when weight is 0.

@@ -52,7 +52,8 @@ Layer layerOf(const Fragment& fragment) {
 
 }  // namespace
 
-void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil) {
+void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
+                     const std::vector<std::uint8_t>* only) {
   const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     std::vector<const Fragment*> sorted;
@@ -60,6 +61,7 @@ void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil)
       for (int x = 0; x < lists.window.width(); ++x) {
         const auto pixel =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
+        if (only && !(*only)[pixel]) continue;
         const glm::vec4 solid = lists.solid.at(x, y);
         const bool hasSolid = std::isfinite(solid.a);
         sorted.clear();

@@ -7,6 +7,8 @@ namespace pellucid {
 
 // Writes the veil of the lists' window, which lies inside `data`. Layers at equal depth merge by OpenEXR's symmetric
 // rule, so that no order matters: not even between coincident layers.
-void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil);
+//   only  one entry a pixel of the lists' window, 0 leaves the pixel as it is; null: all of them
+void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
+                     const std::vector<std::uint8_t>* only = nullptr);
 
 }  // namespace pellucid

@@ -50,28 +50,28 @@ Veil resolve(const OitPlanes& planes, const ResolveSettings& settings) {
 
 void hideSolids(OitPlanes& planes) {
   if (!planes.scatters()) return;
-  for (std::size_t i = 0; i < planes.solid.size(); ++i)
-    if (planes.refraction[i].z > 0.0f || planes.refraction[i].w > 0.0f) planes.solid[i] = kNoSolid;
+  for (int y = 0; y < planes.data.height(); ++y)
+    for (int x = 0; x < planes.data.width(); ++x)
+      if (scattersAt(planes, x, y)) planes.solid.at(x, y) = kNoSolid;
 }
 
-void hideSolids(FragmentLists& lists) {
-  for (std::size_t pixel = 0; pixel < lists.solid.size(); ++pixel) {
-    glm::vec4& solid = lists.solid[pixel];
-    if (!std::isfinite(solid.a)) continue;
-    const auto first = lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[pixel]);
-    const auto last = lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
-    const bool scatters = std::any_of(first, last, [&solid](const Fragment& fragment) {
-      return fragment.z <= solid.a && (fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f));
-    });
-    if (!scatters) continue;
-    for (auto fragment = first; fragment != last; ++fragment)
-      if (fragment->z > solid.a) {
-        fragment->radiance = glm::vec3(0.0f);
-        fragment->coverage = fragment->variance = 0.0f;
-        fragment->offset = glm::vec2(0.0f);
-      }
-    solid = kNoSolid;
-  }
+void hideSolids(FragmentLists& lists, const OitPlanes& planes) {
+  if (!planes.scatters()) return;
+  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
+  std::uint64_t kept = 0, next = 0;
+  std::size_t pixel = 0;
+  for (int y = 0; y < lists.window.height(); ++y)
+    for (int x = 0; x < lists.window.width(); ++x, ++pixel) {
+      glm::vec4& solid = lists.solid[pixel];
+      const bool hides = std::isfinite(solid.a) && scattersAt(planes, left + x, top + y);
+      const std::uint64_t first = next;
+      next = lists.offsets[pixel + 1];
+      for (std::uint64_t i = first; i < next; ++i)
+        if (!hides || lists.fragments[i].z <= solid.a) lists.fragments[kept++] = lists.fragments[i];
+      if (hides) solid = kNoSolid;
+      lists.offsets[pixel + 1] = kept;
+    }
+  lists.fragments.resize(kept);
 }
 
 void showThrough(const Lookups& lookups, Veil& veil) {

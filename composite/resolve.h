@@ -17,9 +17,10 @@ struct ResolveSettings {
 Veil resolve(const OitPlanes& planes, const ResolveSettings& settings);
 
 // Where layers refract or diffuse, a solid is part of the background that they look up: it is taken out of the sums or
-// lists before they are resolved (with the fragments behind it), after backdropOf() has seen it.
+// lists before they are resolved, after backdropOf() has seen it. Fragments behind it leave the lists.
+//   planes  hold what scatters in the lists' pixels
 void hideSolids(OitPlanes& planes);
-void hideSolids(FragmentLists& lists);
+void hideSolids(FragmentLists& lists, const OitPlanes& planes);
 
 // Applies the background to the pixels of the veil that refract or diffuse; the others are left alone.
 void showThrough(const Lookups& lookups, Veil& veil);

@@ -1,9 +1,16 @@
 #include "composite/tolerance.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "composite/denormals.h"
+#include "composite/gather.h"
 #include "composite/over.h"
 
 namespace pellucid {
@@ -13,20 +20,27 @@ namespace {
 constexpr double kRounding = 0x1p-23;
 constexpr double kResolveRoundings = 16.0;
 
-// The fragments of some pixels of the lists, the others empty.
-FragmentLists onlyPixels(const FragmentLists& lists, const std::vector<bool>& wanted) {
-  FragmentLists chosen;
-  chosen.window = lists.window;
-  chosen.offsets.assign(1, 0);
-  chosen.solid = lists.solid;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (wanted[i])
-      chosen.fragments.insert(chosen.fragments.end(),
-                              lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i]),
-                              lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i + 1]));
-    chosen.offsets.push_back(chosen.fragments.size());
+// The weighted mean of a pixel's layers over its solid, and whether it provably lies within the tolerance. Transmission
+// is exact: only its rounding acts on what lies behind, however bright that is.
+//   behind  the background's colour; nothing: not known yet, not negative
+bool certify(const std::vector<MethodLayer>& layers, const MethodChoice& choice, const glm::vec4& solid,
+             const std::optional<glm::dvec3>& behind, double tolerance, LayerMix& mix) {
+  const glm::dvec3 beta = productOfPassed(layers), bound = errorBound(layers);
+  mix = mixWeighted(layers, choice);
+  mix.transmission = beta;
+  glm::dvec3 back = behind.value_or(glm::dvec3(0.0));
+  if (std::isfinite(solid.a)) {
+    back = glm::dvec3(glm::vec3(solid));
+    mix.light += beta * back;
+    mix.transmission = glm::dvec3(0.0);
   }
-  return chosen;
+  for (int c = 0; c < 3; ++c) {
+    if (!std::isfinite(back[c])) back[c] = 0.0;  // it makes both pictures so
+    const double shown = mix.light[c] + mix.transmission[c] * back[c];
+    const double size = behind || std::isfinite(solid.a) ? std::max(1.0, std::abs(shown)) : 1.0;
+    if (bound[c] + kRounding * beta[c] * std::abs(back[c]) > (tolerance - kRounding) * size) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -62,47 +76,47 @@ glm::dvec3 errorBound(const std::vector<MethodLayer>& layers) {
   return bound;
 }
 
-void compositeWithin(const FragmentLists& lists, const MethodChoice& choice, const GBuffer& background,
-                     double tolerance, Veil& veil, ToleranceCounts& counts) {
-  const Window& data = background.data;
-  compositeBy(*chooseMethod("weighted"), choice, lists, data, veil);
-  const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
-  std::vector<bool> uncertain(lists.solid.size(), false);
-  std::vector<MethodLayer> layers;
-  for (int y = 0; y < lists.window.height(); ++y)
-    for (int x = 0; x < lists.window.width(); ++x) {
-      const std::size_t pixel =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
-      if (!veil.touched.at(left + x, top + y)) continue;
-      layersOf(lists, pixel, lists.solid.at(x, y).a, layers);
-      bool certain = true;
-      if (!layers.empty()) {
-        const glm::dvec3 bound = errorBound(layers);
-        for (int c = 0; c < 3; ++c) {
-          const double transmission = static_cast<double>(veil.transmission.at(left + x, top + y)[c]);
-          const double behind = static_cast<double>(background.beauty.at(left + x, top + y)[c]);
-          // What is not finite behind makes both pictures so.
-          const double shown = static_cast<double>(veil.light.at(left + x, top + y)[c]) +
-                               (std::isfinite(behind) ? transmission * behind : 0.0);
-          // Rounding acts on the background's share, too.
-          const double rounding = std::isfinite(behind) ? kResolveRoundings * kRounding * std::abs(behind) : 0.0;
-          certain = certain && bound[c] + rounding <= tolerance * std::max(1.0, std::abs(shown));
+void compositeWithin(const FragmentLists& lists, const MethodChoice& choice, const Window& data,
+                     const Image<glm::vec4>* background, const OitPlanes* scatter, double tolerance, Veil& veil,
+                     ToleranceCounts& counts) {
+  const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0, width = lists.window.width();
+  std::vector<std::uint8_t> uncertain(lists.solid.size(), 0);
+  std::atomic<std::size_t> certified{0}, recomputed{0};
+  tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
+    const FlushDenormals flush;
+    std::vector<MethodLayer> layers;
+    std::size_t certain = 0, others = 0;
+    for (int y = rows.begin(); y != rows.end(); ++y)
+      for (int x = 0; x < width; ++x) {
+        const std::size_t pixel =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+        const int px = left + x, py = top + y;
+        const glm::vec4 solid = lists.solid.at(x, y);
+        layersOf(lists, pixel, solid.a, layers);
+        if (layers.empty() && !std::isfinite(solid.a)) continue;
+        std::optional<glm::dvec3> behind;
+        if (background && !(scatter && scattersAt(*scatter, px, py)))
+          behind = glm::dvec3(glm::vec3(background->at(px, py)));
+        LayerMix mix;
+        if (layers.empty() || !certify(layers, choice, solid, behind, tolerance, mix)) {
+          uncertain[pixel] = 1;
+          ++(layers.empty() ? certain : others);  // a solid alone is exact
+          continue;
         }
+        ++certain;
+        float front = solid.a;
+        for (const MethodLayer& layer : layers) front = std::min(front, layer.record->z);
+        veil.light.at(px, py) = glm::vec3(mix.light);
+        veil.transmission.at(px, py) = glm::vec3(mix.transmission);
+        veil.frontZ.at(px, py) = front;
+        veil.touched.at(px, py) = 1;
       }
-      ++(certain ? counts.certified : counts.recomputed);
-      uncertain[pixel] = !certain;
-    }
-  Veil exact(data.width(), data.height());
-  const FragmentLists rest = onlyPixels(lists, uncertain);
-  compositeSorted(rest, data, exact);
-  for (int y = 0; y < lists.window.height(); ++y)
-    for (int x = 0; x < lists.window.width(); ++x) {
-      if (!uncertain[static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) +
-                     static_cast<std::size_t>(x)])
-        continue;
-      veil.light.at(left + x, top + y) = exact.light.at(left + x, top + y);
-      veil.transmission.at(left + x, top + y) = exact.transmission.at(left + x, top + y);
-    }
+    certified += certain;
+    recomputed += others;
+  });
+  counts.certified += certified;
+  counts.recomputed += recomputed;
+  compositeSorted(lists, data, veil, &uncertain);
 }
 
 }  // namespace pellucid

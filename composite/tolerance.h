@@ -5,8 +5,8 @@
 
 #include "composite/methods/method.h"
 #include "composite/veil.h"
+#include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
-#include "gbuffer/gbuffer.h"
 
 namespace pellucid {
 
@@ -20,8 +20,11 @@ struct ToleranceCounts {
 glm::dvec3 errorBound(const std::vector<MethodLayer>& layers);
 
 // |x - truth| <= tolerance * max(1, |x|) for every pixel and channel x of the picture over `background`, without its
-// own rounding to float. Writes the veil of the lists' window.
-void compositeWithin(const FragmentLists& lists, const MethodChoice& choice, const GBuffer& background,
-                     double tolerance, Veil& veil, ToleranceCounts& counts);
+// own rounding to float. Writes the veil of the lists' window, which lies inside `data`; transmission is exact.
+//   background  planes of `data`, or null: not known, so that the error stays below `tolerance` whatever it is
+//   scatter     says which pixels look the background up elsewhere, where it is not known yet; or null
+void compositeWithin(const FragmentLists& lists, const MethodChoice& choice, const Window& data,
+                     const Image<glm::vec4>* background, const OitPlanes* scatter, double tolerance, Veil& veil,
+                     ToleranceCounts& counts);
 
 }  // namespace pellucid

@@ -9,6 +9,7 @@
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
+#include "composite/cli/systems.h"
 #include "composite/cli/verbs.h"
 #include "composite/error.h"
 #include "gbuffer/errors.h"
@@ -22,6 +23,7 @@ constexpr int kDefaultSamples = 8;
 struct CompositeFlags {
   std::string opaque, output;
   std::vector<std::string> scenes, layers;
+  std::string systems = "off";
   ReadFlags read;
   SceneFlags scene;
   MethodFlags method;
@@ -43,12 +45,18 @@ void composite(const CompositeFlags& flags) {
         fmt::format("--tolerance: --method {} has no certificate, expected weighted", flags.method.method));
   if (flags.tolerance && flags.method.normalisation != "spectral")
     throw UsageError("--tolerance: --normalisation published has no certificate, expected spectral");
+  if (flags.systems != "off" && (flags.tolerance || flags.method.isOver() || flags.method.isExact() ||
+                                 shot->deepOpaque || !shot->deep.empty() || !shot->hasScene))
+    throw UsageError(
+        "--systems: expected glTF alone on a flat picture, by a blended method in float: the truth, a tolerance and deep "
+        "files have no use for passes per system");
   RenderSettings settings;
   settings.samples = flags.samples;
   settings.sortedTruth = flags.method.isOver();
   settings.listMethod = flags.method.listMethod();
   settings.tolerance = flags.tolerance;
   settings.exactSums = flags.method.isExact();
+  settings.deepOpaque = shot->deepOpaque.get();
   settings.resolve.selfModulation = flags.selfModulation;
   settings.pass.surroundings = shot->surroundings;
   flags.scene.applyTo(settings.pass);
@@ -62,6 +70,12 @@ void composite(const CompositeFlags& flags) {
     stages.time("GL context", [&] { context = std::make_unique<GlContext>(flags.scene.device); });
     stages.time("upload",
                 [&] { pass = std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera); });
+  }
+  std::vector<SystemPass> systems;
+  if (flags.systems != "off") {
+    systems = stages.time("split systems", [&] { return splitSystems(flags.systems, flags.scenes, *shot, *context); });
+    settings.systems = &systems;
+    for (const SystemPass& system : systems) spdlog::info("system {}: at {:.4g} m", system.name, system.z);
   }
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
   RenderCounts counts;
@@ -84,6 +98,7 @@ void composite(const CompositeFlags& flags) {
     truth.sortedTruth = true;
     truth.listMethod.reset();
     truth.tolerance.reset();
+    truth.systems = nullptr;
     RenderCounts truthCounts;
     Stages truthStages;
     const Veil truthVeil = renderVeil(pass.get(), shot->deep, truth, gbuffer, truthStages, truthCounts);
@@ -105,10 +120,14 @@ void composite(const CompositeFlags& flags) {
     const OitPlanes planes = stages.time("debug planes", [&] { return pass->accumulate(settings.pass); });
     for (ExtraLayer& layer : debugLayers(flags.layers, planes)) layers.push_back(std::move(layer));
   }
+  const std::map<std::string, std::string> attributes{{"pellucid:method", flags.method.method},
+                                                      {"pellucid:weight", weightText(settings.pass.weight)}};
   say(stages.time("write", [&] {
-    return writePicture(
-        flags.output, shot->opaque, picture.rgba, picture.touched, layers,
-        {{"pellucid:method", flags.method.method}, {"pellucid:weight", weightText(settings.pass.weight)}});
+    if (!shot->deepOpaque)
+      return writePicture(flags.output, shot->opaque, picture.rgba, picture.touched, layers, attributes);
+    layers.insert(layers.begin(), beautyLayer(picture.rgba));
+    return writeLayers(flags.output, gbuffer.display, gbuffer.data, layers, attributes,
+                       shot->hasScene ? &shot->camera : nullptr);
   }));
   for (const auto& source : shot->deep) say(source->notes());
   reportRun(flags.run, stages, counts, context ? context->description() : "CPU", report);
@@ -135,6 +154,9 @@ void addComposite(CLI::App& app) {
   verb->add_option("--tolerance", flags->tolerance,
                    "Error to live with, guaranteed for every pixel and channel: E times the larger of 1 and the value")
       ->check(CLI::NonNegativeNumber);
+  verb->add_option("--systems", flags->systems, "A pass of its own for every input file or named node, sorted coarsely")
+      ->check(CLI::IsMember({"off", "file", "node"}))
+      ->capture_default_str();
   verb->add_flag("--self-modulation", flags->selfModulation, "PT17 eq. 14, a heuristic for --normalisation published");
   addLayersOption(*verb, flags->layers);
   verb->callback([flags] { composite(*flags); });

@@ -175,10 +175,11 @@ std::optional<ChosenMethod> MethodFlags::listMethod() const {
   if (chosen && isExact())
     throw UsageError(
         fmt::format("--precision: found exact with --method {}, expected phenomenological or over", method));
-  if (!chosen || chosen->method->weighs) return chosen;
-  for (const CLI::Option* option : {weightOption, normalisationOption})
-    if (option && option->count() > 0)
-      throw UsageError(fmt::format("{}: --method {} does not weigh its layers", option->get_name(), method));
+  if (!chosen) return chosen;
+  if (!chosen->method->weighs && weightOption && weightOption->count() > 0)
+    throw UsageError(fmt::format("--weight: --method {} does not weigh its layers", method));
+  if (!chosen->method->normalises && normalisationOption && normalisationOption->count() > 0)
+    throw UsageError(fmt::format("--normalisation: --method {} has one of its own", method));
   return chosen;
 }
 

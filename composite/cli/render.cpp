@@ -1,7 +1,12 @@
 #include "composite/cli/render.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "composite/antialias.h"
 #include "composite/cli/lists.h"
+#include "composite/cli/systems.h"
 #include "composite/fold.h"
 #include "composite/fold_exact.h"
 #include "composite/over.h"
@@ -12,48 +17,114 @@ namespace pellucid::cli {
 namespace {
 
 // One sample by lists: the sorted truth, a method of the table, or the sums where deep files take part.
-Veil veilFromLists(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep,
-                   const RenderSettings& settings, const PassSettings& sample, const GBuffer& gbuffer,
-                   RenderCounts& counts) {
-  Veil veil(gbuffer.data.width(), gbuffer.data.height());
-  const bool exact = settings.sortedTruth || settings.tolerance;
-  const MethodChoice choice{0, sample.weight, sample.normalisation};
-  OitPlanes planes;
-  const bool sums = !exact && !settings.listMethod;
-  // Every method shows the same background, which the pixel's scattering layers alone decide.
-  const bool scatters = !sums && pass && pass->scatters(sample);
-  if (sums || scatters) planes = emptyPlanes(gbuffer.display, gbuffer.data);
-  eachList(pass, deep, gbuffer, sample, exact ? VolumeRule::split : VolumeRule::midDepth,
-           [&](const FragmentLists& given) {
-             if (!pass) counts.fragments += given.fragments.size();
-             FragmentLists shown;
-             if (scatters) {
-               // The truth depends on no order either.
-               if (settings.sortedTruth || settings.exactSums)
-                 foldExact(given, sample.weight, sample.normalisation, planes);
-               else
-                 foldScattering(given, planes);
-               shown = given;
-               hideSolids(shown);
-             }
-             const FragmentLists& tile = scatters ? shown : given;
-             if (settings.tolerance)
-               compositeWithin(tile, choice, gbuffer, *settings.tolerance, veil, counts.tolerance);
-             else if (settings.sortedTruth)
-               compositeSorted(tile, gbuffer.data, veil);
-             else if (settings.listMethod)
-               compositeBy(*settings.listMethod, choice, tile, gbuffer.data, veil);
-             else if (settings.exactSums)
-               foldExact(tile, sample.weight, sample.normalisation, planes);
-             else
-               foldFragments(tile, sample.weight, sample.normalisation, planes);
-           });
-  if (sums) return resolveOver(std::move(planes), settings.resolve, settings.lookup, gbuffer);
-  if (planes.scatters()) {
-    const Backdrop backdrop = backdropOf(gbuffer, planes.solid);
-    showThrough(Lookups(backdrop, planes, settings.lookup), veil);
+class ListPainter {
+ public:
+  ListPainter(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,
+              const PassSettings& sample, const GBuffer& gbuffer, RenderCounts& counts)
+      : pass_(pass), deep_(deep), settings_(settings), sample_(sample), gbuffer_(gbuffer), counts_(counts) {
+    sums_ = !settings.sortedTruth && !settings.tolerance && !settings.listMethod && !settings.deepOpaque;
+    const bool deepScatters =
+        std::any_of(deep.begin(), deep.end(), [](const auto& source) { return source->mayScatter(); });
+    scatters_ = !sums_ && (deepScatters || (pass && pass->scatters(sample)));
+    if (sums_ || scatters_) planes_ = emptyPlanes(gbuffer.display, gbuffer.data);
   }
-  return veil;
+
+  Veil paint() {
+    Veil veil(gbuffer_.data.width(), gbuffer_.data.height());
+    if (settings_.deepOpaque) {
+      veil.addScatter();
+      lookedUp_ = Image<glm::vec3>(gbuffer_.data.width(), gbuffer_.data.height(), glm::vec3(0.0f));
+    }
+    const bool split = settings_.sortedTruth || settings_.tolerance;
+    eachList(pass_, deep_, gbuffer_, sample_, split ? VolumeRule::split : VolumeRule::midDepth,
+             [&](const FragmentLists& lists) {
+               if (!pass_) counts_.fragments += lists.fragments.size();
+               tile(lists, veil);
+             });
+    if (sums_) return resolveOver(std::move(planes_), settings_.resolve, settings_.lookup, gbuffer_);
+    if (!planes_.scatters()) return veil;
+    const Backdrop backdrop = backdropOf(gbuffer_, planes_.solid);
+    const Lookups lookups(backdrop, planes_, settings_.lookup);
+    if (settings_.deepOpaque)
+      showThroughHeldOut(lookups, lookedUp_, veil);
+    else
+      showThrough(lookups, veil);
+    return veil;
+  }
+
+ private:
+  void tile(const FragmentLists& given, Veil& veil) {
+    if (sums_) {
+      fold(given, planes_);
+      return;
+    }
+    if (!scatters_) {
+      composite(given, veil);
+      return;
+    }
+    // Every method shows the same background, which the pixel's scattering layers alone decide. The truth depends on
+    // no order either.
+    if (settings_.sortedTruth || settings_.exactSums)
+      foldExact(given, sample_.weight, sample_.normalisation, planes_);
+    else
+      foldScattering(given, planes_);
+    FragmentLists shown = given;
+    hideSolids(shown, planes_);
+    composite(shown, veil);
+  }
+
+  void composite(const FragmentLists& lists, Veil& veil) {
+    const OitPlanes* scatter = scatters_ ? &planes_ : nullptr;
+    if (!settings_.deepOpaque) {
+      byMethod(lists, gbuffer_.data, &gbuffer_.beauty, scatter, veil);
+      return;
+    }
+    const FragmentLists heldOut = holdOut(lists, *settings_.deepOpaque);
+    if (heldOut.window.width() == 0) return;
+    Veil row(heldOut.window.width(), 1);
+    byMethod(heldOut, heldOut.window, nullptr, nullptr, row);
+    addHeldOut(lists, heldOut, row, *settings_.deepOpaque, scatter, veil, lookedUp_);
+  }
+
+  void byMethod(const FragmentLists& lists, const Window& data, const Image<glm::vec4>* background,
+                const OitPlanes* scatter, Veil& veil) {
+    const MethodChoice choice{0, sample_.weight, sample_.normalisation};
+    if (settings_.tolerance) {
+      compositeWithin(lists, choice, data, background, scatter, *settings_.tolerance, veil, counts_.tolerance);
+    } else if (settings_.sortedTruth) {
+      compositeSorted(lists, data, veil);
+    } else if (settings_.listMethod) {
+      compositeBy(*settings_.listMethod, choice, lists, data, veil);
+    } else {
+      OitPlanes planes = emptyPlanes(data, data);
+      fold(lists, planes);
+      veil = resolve(planes, settings_.resolve);
+    }
+  }
+
+  void fold(const FragmentLists& lists, OitPlanes& planes) const {
+    if (settings_.exactSums)
+      foldExact(lists, sample_.weight, sample_.normalisation, planes);
+    else
+      foldFragments(lists, sample_.weight, sample_.normalisation, planes);
+  }
+
+  TransparentPass* pass_;
+  std::vector<std::unique_ptr<DeepSource>>& deep_;
+  const RenderSettings& settings_;
+  const PassSettings& sample_;
+  const GBuffer& gbuffer_;
+  RenderCounts& counts_;
+  bool sums_, scatters_;
+  OitPlanes planes_;             // the sums, or what scatters
+  Image<glm::vec3> lookedUp_;    // with a deep picture behind
+};
+
+// The flags that ask for this weight, with every bit of it.
+std::string weightFlags(const shading::WeightSettings& weight) {
+  const std::string text = weightText(weight), name = text.substr(0, text.find(' '));
+  if (weight.kind == shading::PLD_WEIGHT_POWER) return fmt::format("--weight power:{}", weight.exponent);
+  return fmt::format("--weight {} --weight-range {}:{}", name, weight.rangeNear, weight.rangeFar);
 }
 
 }  // namespace
@@ -64,10 +135,15 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
   for (int i = 0; i < settings.samples; ++i) {
     PassSettings sample = settings.pass;
     sample.sample = samplePosition(i, settings.samples);
-    if (settings.sortedTruth || settings.listMethod || settings.tolerance || settings.exactSums || !deep.empty() ||
-        !pass) {
+    if (settings.systems && !settings.sortedTruth) {
+      const Veil veil = stages.time("passes of systems", [&] {
+        return veilFromSystems(*pass, *settings.systems, settings, sample, gbuffer, counts);
+      });
+      stages.time("average", [&] { mean.add(veil); });
+    } else if (settings.sortedTruth || settings.listMethod || settings.tolerance || settings.exactSums || settings.deepOpaque ||
+        !deep.empty() || !pass) {
       const Veil veil = stages.time(settings.sortedTruth ? "lists and sort" : "lists and method",
-                                    [&] { return veilFromLists(pass, deep, settings, sample, gbuffer, counts); });
+                                    [&] { return ListPainter(pass, deep, settings, sample, gbuffer, counts).paint(); });
       stages.time("average", [&] { mean.add(veil); });
     } else {
       OitPlanes planes = stages.time("transparent pass", [&] { return pass->accumulate(sample); });
@@ -82,7 +158,7 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
     counts.tiles += statistics.tiles;
     counts.fragments += statistics.fragments;
     counts.bitsPerPixel = statistics.bitsPerPixel;
-    counts.passes = statistics.passes;
+    if (!settings.systems) counts.passes = statistics.passes;
     counts.pruned = statistics.pruned;
   }
   return stages.time("average", [&] { return mean.finish(); });
@@ -100,8 +176,8 @@ void fitShotWeight(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource
     return fitWeight(probes, settings.weight, settings.normalisation);
   });
   settings.weight = fit.weight;
-  spdlog::info("--weight auto: {} (name, near, far, exponent), mean error {:.4g} on {} probes", weightText(fit.weight),
-               fit.meanError, fit.probes);
+  spdlog::info("--weight auto: mean error {:.4g} on {} probes; the same again: {}", fit.meanError, fit.probes,
+               weightFlags(fit.weight));
 }
 
 }  // namespace pellucid::cli

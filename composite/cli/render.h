@@ -8,6 +8,8 @@
 
 namespace pellucid::cli {
 
+struct SystemPass;
+
 struct RenderSettings {
   PassSettings pass;
   ResolveSettings resolve;
@@ -16,6 +18,8 @@ struct RenderSettings {
   bool sortedTruth = false;                // `over`
   int samples = 1;                         // --aa
   std::optional<ChosenMethod> listMethod;  // a method that works from fragment lists; nothing: the GL pass's sums
+  const DeepOpaque* deepOpaque = nullptr;  // the picture, when it is deep
+  std::vector<SystemPass>* systems = nullptr;  // each its own pass, farthest first
   std::optional<double> tolerance;         // certify the sums, composite exactly what they cannot
 };
 

@@ -33,6 +33,17 @@ void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
       ->check(CLI::IsMember({"transparent", "transmission", "depth", "D", "delta", "weight", "count"}));
 }
 
+ExtraLayer beautyLayer(const Image<glm::vec4>& rgba) {
+  ExtraLayer layer;
+  const char* names[] = {"R", "G", "B", "A"};
+  for (int c = 0; c < 4; ++c) {
+    Image<float> plane(rgba.width(), rgba.height());
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = rgba[i][c];
+    layer.channels.emplace_back(names[c], std::move(plane));
+  }
+  return layer;
+}
+
 std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, const Veil& veil) {
   const int width = veil.touched.width(), height = veil.touched.height();
   std::vector<ExtraLayer> result;

@@ -23,6 +23,7 @@ class Threads {
 };
 
 void addLayersOption(CLI::App& verb, std::vector<std::string>& layers);
+ExtraLayer beautyLayer(const Image<glm::vec4>& rgba);  // R, G, B, A without a layer's name
 std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, const Veil& veil);
 
 // Prints --stats as text, or with --json the report with the statistics in it.

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "gbuffer/errors.h"
+#include "gbuffer/part_camera.h"
 
 namespace pellucid::cli {
 namespace {
@@ -65,6 +66,35 @@ bool isExrName(const std::string& path) {
   return end == ".exr";
 }
 
+// A picture all of whose parts are deep becomes shot.deepOpaque, and what it flattens to.
+OpaqueFile readPicture(const std::string& path, const ReadOptions& options, const Camera* camera, Shot& shot) {
+  ExrDocument document = readExr(path);
+  const bool deep =
+      std::all_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; });
+  if (!deep) return interpretOpaque(std::move(document), options, camera);
+  if (options.depthKind != "planar" || !options.depthChannel.empty() || !options.beautyLayer.empty())
+    throw UsageError(fmt::format("{}: --beauty, --depth and --depth-kind are for flat pictures: found deep samples, "
+                                 "which have one colour and planar depth",
+                                 path));
+  shot.deepOpaque = std::make_unique<DeepOpaque>(readDeepOpaque(path, options.metresPerUnit));
+  const DeepOpaque& samples = *shot.deepOpaque;
+  OpaqueFile file;
+  file.metresPerUnit = options.metresPerUnit;
+  file.gbuffer.display = samples.display;
+  file.gbuffer.data = samples.data;
+  file.gbuffer.pixelAspect = document.parts[0].pixelAspect;
+  file.gbuffer.beauty = samples.flat;
+  file.gbuffer.hasAlpha = true;
+  file.gbuffer.viewZ = samples.farthest;
+  file.document = std::move(document);
+  readCamera(file.document.parts[0], options.metresPerUnit, file);
+  file.notes.push_back(fmt::format("a deep picture: its {} samples hold transparent layers out one by one",
+                                   samples.samples.size()));
+  if (samples.oddities.notFinite)
+    file.notes.push_back(fmt::format("{} deep samples are not finite and were skipped", samples.oddities.notFinite));
+  return file;
+}
+
 }  // namespace
 
 Camera chooseCamera(const std::string& flag, const GBuffer& gbuffer, const Scene& scene,
@@ -118,13 +148,13 @@ std::unique_ptr<Shot> loadShot(const std::string& opaquePath, const std::vector<
     const bool depthNeedsCamera = options.depthKind == "ray" || options.depthKind == "device";
     if (depthNeedsCamera) options.depthKind = "planar";  // for the windows alone
     if (!shot->hasScene) {  // deep samples lie in the picture's own pixels: no camera is needed
-      shot->opaque = readOpaque(opaquePath, read.options());
+      shot->opaque = readPicture(opaquePath, read.options(), nullptr, *shot);
       if (shot->opaque.gbuffer.camera) shot->camera = *shot->opaque.gbuffer.camera;
       return;
     }
-    shot->opaque = readOpaque(opaquePath, options);
+    shot->opaque = readPicture(opaquePath, options, nullptr, *shot);
     shot->camera = chooseCamera(sceneFlags.camera, shot->opaque.gbuffer, shot->scene, opaquePath);
-    if (depthNeedsCamera) shot->opaque = readOpaque(opaquePath, read.options(), &shot->camera);
+    if (depthNeedsCamera) shot->opaque = readPicture(opaquePath, read.options(), &shot->camera, *shot);
   });
   say(shot->opaque.notes);
   stages.time("read deep", [&] {
@@ -133,7 +163,8 @@ std::unique_ptr<Shot> loadShot(const std::string& opaquePath, const std::vector<
           std::make_unique<DeepSource>(deep[i], read.unit, shot->opaque.gbuffer, static_cast<std::uint32_t>(i)));
   });
   if (!shot->hasScene) return shot;
-  const std::optional<double> residual = verifyCamera(shot->opaque, shot->camera);
+  std::optional<double> residual;
+  if (!shot->deepOpaque) residual = verifyCamera(shot->opaque, shot->camera);
   spdlog::info("camera: {}{}", shot->camera.origin,
                residual ? fmt::format(", checked against positions: median {:.2g} px", *residual) : ", not checked");
 

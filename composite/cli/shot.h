@@ -6,6 +6,7 @@
 
 #include "composite/cli/messages.h"
 #include "composite/cli/options.h"
+#include "composite/deep/deep_opaque.h"
 #include "composite/deep/deep_source.h"
 #include "composite/veil.h"
 
@@ -16,6 +17,7 @@ struct Shot {
   Scene scene;
   Camera camera;
   glm::vec3 surroundings{0.0f};
+  std::unique_ptr<DeepOpaque> deepOpaque;         // when the opaque picture is deep; `opaque` is then what it flattens to
   bool hasScene = true;                           // false when all transparent inputs are deep files
   std::vector<std::unique_ptr<DeepSource>> deep;  // transparent layers that come as deep EXR
 };

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -8,9 +7,12 @@
 
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
+#include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
 #include "composite/compare/page.h"
+#include "composite/study/flip.h"
+#include "composite/study/plot.h"
 #include "composite/study/study.h"
 #include "gbuffer/atomic_file.h"
 #include "gbuffer/errors.h"
@@ -26,8 +28,11 @@ struct StudyFlags {
   ReadFlags read;
   SceneFlags scene;
   MethodFlags method;
+  ScatterFlags scatter;
+  LookupFlags lookup;
   RunFlags run;
-  int samples = 1;
+  std::vector<int> samples{1};
+  std::vector<std::string> precisions{"float"};
 };
 
 void writeText(const std::string& path, const std::string& text) {
@@ -47,47 +52,115 @@ Image<glm::vec3> colourOf(const Image<glm::vec4>& picture) {
 
 nlohmann::json jsonOf(const std::vector<StudyRow>& rows) {
   nlohmann::json list = nlohmann::json::array();
-  for (const StudyRow& row : rows)
+  for (const StudyRow& row : rows) {
+    nlohmann::json stages = nlohmann::json::object();
+    for (const auto& [name, seconds] : row.stages) stages[name] = seconds;
     list.push_back({{"method", row.method},
+                    {"precision", row.precision},
+                    {"samples", row.samples},
                     {"mean", row.error.mean},
                     {"rmse", row.error.rmse},
                     {"p99", row.error.p99},
                     {"max", row.error.maximum},
                     {"relativeMse", row.relativeSquare},
+                    {"flip", row.flip},
                     {"notFinite", row.error.nonFinite},
                     {"seconds", row.seconds},
+                    {"stages", stages},
                     {"bitsPerPixel", row.bits},
                     {"passes", row.passes},
                     {"paretoFront", row.front}});
+  }
   return list;
 }
 
-// What a row says of its method. The GL pass of the phenomenological model keeps the sums of `weighted`.
-void describe(StudyRow& row, const std::optional<ChosenMethod>& chosen) {
-  const ChosenMethod known = chosen ? *chosen : *chooseMethod("weighted");
-  row.bits = row.method == "over" ? 0 : known.method->bits(known.order);
-  row.passes = row.method == "over" ? 2 : known.method->passes;
+// One row to be: a method, or the truth (nothing chosen, sorted).
+struct Candidate {
+  std::string name;
+  std::optional<ChosenMethod> chosen;
+  bool sorted = false;
+  std::string precision;
+  int samples = 1;
+};
+
+// Every method at every number of samples; the tiers are those of the GL pass's sums alone.
+std::vector<Candidate> candidatesOf(const StudyFlags& flags) {
+  std::vector<Candidate> candidates;
+  for (const int samples : flags.samples) {
+    candidates.push_back({"over", std::nullopt, true, "double", samples});
+    for (const std::string& name : flags.methods) {
+      const std::optional<ChosenMethod> chosen = chooseMethod(name);
+      if (!chosen && name != "phenomenological")
+        throw UsageError(fmt::format("--methods: found '{}', expected phenomenological, {}", name, methodNames()));
+      if (chosen)
+        candidates.push_back({chosen->name, chosen, false, chosen->method->precision, samples});
+      else
+        for (const std::string& precision : flags.precisions)
+          candidates.push_back({name, std::nullopt, false, precision, samples});
+    }
+  }
+  return candidates;
+}
+
+// What a row says of its method. The GL pass of the phenomenological model keeps the sums of `weighted`; the exact tier
+// keeps lists.
+void describe(StudyRow& row, const Candidate& candidate, const RenderCounts& counts) {
+  row.method = candidate.name;
+  row.precision = candidate.precision;
+  row.samples = candidate.samples;
+  if (candidate.chosen) {
+    row.bits = candidate.chosen->method->bits(candidate.chosen->order);
+    row.passes = candidate.chosen->method->passes;
+  } else if (candidate.sorted || candidate.precision == "exact") {
+    row.passes = 2;  // solids, then lists
+  } else {
+    row.bits = counts.bitsPerPixel;
+    row.passes = counts.passes;
+  }
+}
+
+void writeAll(const StudyFlags& flags, const std::vector<StudyRow>& rows, const std::vector<PagePicture>& pictures,
+              const std::string& weight) {
+  const std::string base = flags.folder + "/study.";
+  const Plot plot = studyPlot(rows);
+  writeText(base + "txt", studyText(rows));
+  writeText(base + "csv", studyCsv(rows));
+  writeText(base + "json", jsonOf(rows).dump(2) + "\n");
+  writeText(base + "svg", plotSvg(plot));
+  if (!writePlotPng(base + "png", plot)) spdlog::info("study.png has no labels: no font was found (fonts-dejavu-core)");
+  Page page;
+  page.title = "What each method pays to miss the truth";
+  page.lines = {flags.opaque + ", weight " + weight};
+  PageTable table{"Error against sorted over", studyHead(), {}};
+  for (const StudyRow& row : rows) table.rows.push_back(studyCells(row));
+  page.tables.push_back(std::move(table));
+  const std::vector<std::string> stages = stageNames(rows);
+  PageTable seconds{"Seconds per stage", {"method"}, {}};
+  seconds.head.insert(seconds.head.end(), stages.begin(), stages.end());
+  for (const StudyRow& row : rows) seconds.rows.push_back(stageCells(row, stages));
+  page.tables.push_back(std::move(seconds));
+  page.plotSvg = plotSvg(plot);
+  page.pictures = pictures;
+  page.right = pictures.size() > 1 ? 1 : 0;
+  writePage(base + "html", page);
 }
 
 void study(const StudyFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  std::vector<std::optional<ChosenMethod>> chosen;
-  for (const std::string& name : flags.methods) {
-    chosen.push_back(chooseMethod(name));
-    if (!chosen.back() && name != "phenomenological")
-      throw UsageError(fmt::format("--methods: found '{}', expected phenomenological, {}", name, methodNames()));
-  }
+  const std::vector<Candidate> candidates = candidatesOf(flags);
   const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   std::error_code error;
   std::filesystem::create_directories(flags.folder, error);
   if (error) throw ResourceError(fmt::format("{}: cannot be made: {}", flags.folder, error.message()));
   RenderSettings settings;
-  settings.samples = flags.samples;
+  settings.deepOpaque = shot->deepOpaque.get();
   settings.pass.surroundings = shot->surroundings;
   flags.scene.applyTo(settings.pass);
   flags.method.applyTo(settings.pass, shot->camera);
+  flags.scatter.applyTo(settings.pass);
+  settings.lookup = flags.lookup.settings();
   std::unique_ptr<GlContext> context;
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
@@ -95,59 +168,56 @@ void study(const StudyFlags& flags) {
     pass = std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera);
   }
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
-  // One untimed run first: shaders compile on first use.
-  {
+  const auto settingsFor = [&](const Candidate& candidate) {
+    RenderSettings how = settings;
+    how.samples = candidate.samples;
+    how.sortedTruth = candidate.sorted;
+    how.listMethod = candidate.chosen;
+    how.exactSums = candidate.precision == "exact";
+    return how;
+  };
+  // Untimed runs first: shaders compile on first use.
+  for (const bool lists : {false, true}) {
     RenderCounts counts;
     Stages unused;
     RenderSettings warm = settings;
-    warm.samples = 1;
+    warm.exactSums = lists;
     renderVeil(pass.get(), shot->deep, warm, gbuffer, unused, counts);
   }
-  const auto render = [&](const RenderSettings& how, double& seconds) {
+  // The truth is `over` at the most samples.
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (candidates[i].sorted && candidates[i].samples > candidates[best].samples) best = i;
+  std::vector<StudyRow> rows(candidates.size());
+  std::vector<PagePicture> pictures(candidates.size());
+  Image<glm::vec4> truth;
+  std::unique_ptr<FlipReference> flip;
+  std::vector<std::size_t> order{best};
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (i != best) order.push_back(i);
+  for (std::size_t done = 0; done < order.size(); ++done) {
+    const Candidate& candidate = candidates[order[done]];
+    StudyRow& row = rows[order[done]];
     RenderCounts counts;
-    Stages unused;
-    const auto start = std::chrono::steady_clock::now();
-    const Veil veil = renderVeil(pass.get(), shot->deep, how, gbuffer, unused, counts);
-    Picture picture = compose(veil, gbuffer);
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return std::move(picture.rgba);
-  };
-  std::vector<StudyRow> rows(1);
-  rows[0].method = "over";
-  RenderSettings exact = settings;
-  exact.sortedTruth = true;
-  const Image<glm::vec4> truth = render(exact, rows[0].seconds);
-  rows[0].error = measureError(truth, truth);
-  describe(rows[0], std::nullopt);
-  Page page;
-  page.pictures.push_back({"over", colourOf(truth)});
-  for (std::size_t i = 0; i < flags.methods.size(); ++i) {
-    spdlog::info("study: {} ({} of {})", flags.methods[i], i + 1, flags.methods.size());
-    StudyRow row;
-    row.method = chosen[i] ? chosen[i]->name : flags.methods[i];
-    RenderSettings how = settings;
-    how.listMethod = chosen[i];
-    const Image<glm::vec4> picture = render(how, row.seconds);
-    row.error = measureError(picture, truth);
-    row.relativeSquare = relativeSquareError(picture, truth);
-    describe(row, chosen[i]);
-    page.pictures.push_back({row.method, colourOf(picture)});
-    rows.push_back(std::move(row));
+    Stages own;
+    const Veil veil = renderVeil(pass.get(), shot->deep, settingsFor(candidate), gbuffer, own, counts);
+    const Picture picture = own.time("compose", [&] { return compose(veil, gbuffer); });
+    row.stages = own.seconds();
+    for (const auto& [name, seconds] : row.stages) row.seconds += seconds;
+    describe(row, candidate, counts);
+    if (done == 0) {
+      truth = picture.rgba;
+      flip = std::make_unique<FlipReference>(truth);
+    }
+    row.error = measureError(picture.rgba, truth);
+    row.relativeSquare = relativeSquareError(picture.rgba, truth);
+    row.flip = meanOf(flip->map(picture.rgba));
+    pictures[order[done]] = {rowName(row), colourOf(picture.rgba)};
+    spdlog::info("study: {} of {}: {}, rmse {:.3g}, {:.3f} s", done + 1, order.size(), rowName(row), row.error.rmse,
+                 row.seconds);
   }
   markFront(rows);
-  const std::string base = flags.folder + "/study.";
-  writeText(base + "txt", studyText(rows));
-  writeText(base + "csv", studyCsv(rows));
-  writeText(base + "json", jsonOf(rows).dump(2) + "\n");
-  writeText(base + "svg", studySvg(rows));
-  page.title = "What each method pays to miss the truth";
-  page.lines = {flags.opaque + ", " + std::to_string(flags.samples) + " samples a pixel, weight " +
-                weightText(settings.pass.weight)};
-  PageTable table{"Error against sorted over", studyHead(), {}};
-  for (const StudyRow& row : rows) table.rows.push_back(studyCells(row));
-  page.tables.push_back(std::move(table));
-  page.plotSvg = studySvg(rows);
-  writePage(base + "html", page);
+  writeAll(flags, rows, pictures, weightText(settings.pass.weight));
   for (const auto& source : shot->deep) say(source->notes());
   if (flags.run.json)
     fmt::print("{}\n", jsonOf(rows).dump(2));
@@ -162,14 +232,24 @@ void addStudy(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("study", "Error against cost of the methods on a shot: table, plot, page");
   verb->add_option("opaque", flags->opaque, "EXR with beauty and depth")->required();
   verb->add_option("scenes", flags->scenes, "glTF, GLB or deep EXR with the transparent things")->required();
-  verb->add_option("-o,--output", flags->folder, "Folder for study.txt, .csv, .json, .svg and .html")->required();
+  verb->add_option("-o,--output", flags->folder, "Folder for study.txt, .csv, .json, .svg, .png and .html")->required();
   verb->add_option("--methods", flags->methods, "Methods to compare: " + methodNames())
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
-  verb->add_option("--aa", flags->samples, "Jittered passes, averaged")
+  verb->add_option("--aa", flags->samples,
+                   "Jittered passes, averaged: numbers to compare; the truth is over at the most of them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
+  verb->add_option("--precision", flags->precisions, "Tiers of phenomenological to compare: float, exact")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"float", "exact"}))
+      ->capture_default_str();
+  flags->scatter.addTo(*verb);
+  flags->lookup.addTo(*verb);
   flags->read.addTo(*verb);
   flags->scene.addTo(*verb);
   flags->method.addWeightTo(*verb, true);

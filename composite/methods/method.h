@@ -41,7 +41,9 @@ struct Method {
   LayerMethod mix;
   int orderDefault, orderLeast, orderMost;  // 0 where it has none
   bool evenOrder;
-  bool weighs;             // honours --weight and --normalisation
+  bool weighs;             // honours --weight
+  bool normalises;         // honours --normalisation
+  const char* precision;   // of its sums: "half" (then one coverage for all channels), "float" or "double"
   int passes;              // of geometry
   int (*bits)(int order);  // of sums a pixel, float, coloured opacity
   const char* source;      // where it is from
@@ -83,6 +85,12 @@ LayerMix mixUnsorted(const std::vector<MethodLayer>&, const MethodChoice&);
 LayerMix mixFrontTail(const std::vector<MethodLayer>&, const MethodChoice&);
 LayerMix mixWavelet(const std::vector<MethodLayer>&, const MethodChoice&);
 LayerMix mixMoments(const std::vector<MethodLayer>&, const MethodChoice&);
+LayerMix mixListing3(const std::vector<MethodLayer>&, const MethodChoice&);
+LayerMix mixListing4(const std::vector<MethodLayer>&, const MethodChoice&);
+LayerMix mixMonochrome(const std::vector<MethodLayer>&, const MethodChoice&);
+// The mean colour of WB13 listings 3 and 4, whose clamp keeps thin sums from blowing up and large ones from overflow.
+//   sum, weight  of w C and w alpha, >= 0
+glm::vec3 listingColour(const glm::vec3& sum, float weight);
 LayerMix mixMlab(const std::vector<MethodLayer>&, const MethodChoice&);
 
 }  // namespace pellucid

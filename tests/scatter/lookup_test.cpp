@@ -134,7 +134,7 @@ struct Row {
     foldScattering(lists, scatter);
     const Image<glm::vec4> solid = scatter.solid;
     FragmentLists shown = lists;
-    hideSolids(shown);
+    hideSolids(shown, scatter);
     Veil veil(kWidth, 1);
     compositeSorted(shown, gbuffer.data, veil);
     return finish(veil, scatter, solid);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "composite/over.h"
 #include "composite/study/fit_weight.h"
@@ -12,6 +13,7 @@
 #include "tests/support/layers.h"
 #include "tests/support/program.h"
 #include "tests/support/shots.h"
+#include "tests/truth/browser.h"
 #include "tests/truth/sets.h"
 
 namespace pellucid {
@@ -84,16 +86,151 @@ TEST(Study, VerbWritesTablePlotAndPage) {
     rmse[row["method"]] = row["rmse"].get<double>();
     EXPECT_GT(row["seconds"].get<double>(), 0.0);
   }
+  for (const auto& row : rows) {
+    double stages = 0;
+    for (const auto& [name, seconds] : row["stages"].items()) stages += seconds.get<double>();
+    EXPECT_NEAR(stages, row["seconds"].get<double>(), 1e-9);
+    EXPECT_EQ(row["flip"].get<double>() > 1e-3, row["rmse"].get<double>() > 1e-3) << row["method"];
+  }
   EXPECT_EQ(rmse["over"], 0.0);
   EXPECT_LT(rmse["mlab:4"], 1e-6);  // three layers fit
   EXPECT_LT(rmse["front+tail"], rmse["blended"]);
   EXPECT_GT(rmse["sum"], rmse["blended"]);
   EXPECT_EQ(filesIn(folder + "/out"),
-            (std::vector<std::string>{"study.csv", "study.html", "study.json", "study.svg", "study.txt"}));
+            (std::vector<std::string>{"study.csv", "study.html", "study.json", "study.png", "study.svg", "study.txt"}));
   EXPECT_EQ(nlohmann::json::parse(slurp(folder + "/out/study.json")), rows);
   EXPECT_NE(slurp(folder + "/out/study.svg").find("wavelet:2"), std::string::npos);
   EXPECT_EQ(runProgram({"study", "opaque.exr", "glass.glb", "-o", "out", "--methods", "moments:5"}, options).code, 2);
 }
+
+TEST(Study, SamplesAndTiersAreRowsOfTheirOwn) {
+  const std::string folder = freshFolder("study-rows");
+  RunOptions options;
+  options.folder = folder;
+  writeOpaque(folder + "/opaque.exr");
+  writeGlb(folder + "/glass.glb", {Quad{{-1, -.7f, -4}, {1.7f, .2f, 1}, {.3f, 1.2f, 0}, unlit(.9f, .2f, .1f, .5f)},
+                                   Quad{{-1, -1, -3}, {1.8f, 0, -1}, {.1f, 1.6f, 0}, unlit(.1f, .8f, .3f, .3f)}});
+  const Ended ended = runProgram({"study", "opaque.exr", "glass.glb", "-o", "out", "--json", "--aa", "1,4", "--methods",
+                                  "phenomenological,listing3", "--precision", "float,exact"},
+                                 options);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const nlohmann::json rows = nlohmann::json::parse(ended.out);
+  ASSERT_EQ(rows.size(), 8u);
+  std::map<std::string, nlohmann::json> by;
+  for (const auto& row : rows)
+    by[row["method"].get<std::string>() + " " + row["precision"].get<std::string>() + " " +
+       std::to_string(row["samples"].get<int>())] = row;
+  EXPECT_EQ(by["over double 4"]["rmse"], 0.0);
+  EXPECT_GT(by["over double 1"]["rmse"].get<double>(), 1e-3);  // jagged edges against smooth ones
+  EXPECT_GT(by["phenomenological float 1"]["rmse"].get<double>(), by["phenomenological float 4"]["rmse"].get<double>());
+  EXPECT_NEAR(by["phenomenological exact 4"]["rmse"].get<double>(), by["phenomenological float 4"]["rmse"].get<double>(),
+              1e-5);
+  EXPECT_EQ(by["listing3 half 1"]["bitsPerPixel"], 80);
+  EXPECT_EQ(runProgram({"study", "opaque.exr", "glass.glb", "-o", "out", "--aa", "0"}, options).code, 2);
+}
+
+TEST(WeightAuto, WhatItPrintsAsksForTheSamePicture) {
+  const std::string folder = freshFolder("weight-again");
+  RunOptions options;
+  options.folder = folder;
+  writeOpaque(folder + "/opaque.exr");
+  writeGlb(folder + "/glass.glb", {Quad{{-1, -.7f, -4}, {1.7f, .2f, 1}, {.3f, 1.2f, 0}, unlit(.9f, .2f, .1f, .5f)},
+                                   Quad{{-1, -1, -3}, {1.8f, 0, -1}, {.1f, 1.6f, 0}, unlit(.1f, .8f, .3f, .3f)}});
+  const Ended fitted = runProgram({"composite", "opaque.exr", "glass.glb", "-o", "a.exr", "--weight", "auto"}, options);
+  ASSERT_EQ(fitted.code, 0) << fitted.err;
+  const std::string key = "the same again: ";
+  ASSERT_NE(fitted.err.find(key), std::string::npos) << fitted.err;
+  std::istringstream flags(fitted.err.substr(fitted.err.find(key) + key.size()));
+  std::vector<std::string> arguments{"composite", "opaque.exr", "glass.glb", "-o", "b.exr"};
+  std::string line;
+  std::getline(flags, line);
+  std::istringstream words(line);
+  for (std::string word; words >> word;) arguments.push_back(word);
+  ASSERT_EQ(runProgram(arguments, options).code, 0) << line;
+  const Ended same = runProgram({"compare", "a.exr", "b.exr", "--fail", "0", "--warn", "0", "--metadata", "ignore"}, options);
+  EXPECT_EQ(same.code, 0) << same.out << same.err;
+}
+
+// The page of a study, on three samples and the real case: the slider moves, and what the canvas shows are the numbers.
+class StudyPage : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(StudyPage, SliderMovesAndNumbersAreRead) {
+  const std::string name = GetParam(), folder = freshFolder("study-page-" + name);
+  std::string opaque = folder + "/" + name + ".exr", glass = folder + "/" + name + ".glb";
+  if (name == "real") {
+    if (assets().empty()) GTEST_SKIP() << "no shared assets";
+    opaque = assets() + "/blender/flat_gbuffer_center.exr";
+    glass = assets() + "/blender/transparent_unlit.glb";
+  } else {
+    RunOptions generator;
+    generator.program = "pellucid_samples";
+    ASSERT_EQ(runProgram({folder, name, "180"}, generator).code, 0);
+  }
+  const Ended ended = runProgram({"study", opaque, glass, "-o", folder + "/out", "--json", "--methods",
+                                  "phenomenological,average,unsorted,front+tail,wavelet:3"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const nlohmann::json rows = nlohmann::json::parse(ended.out);
+  std::map<std::string, double> rmse;
+  for (const auto& row : rows) rmse[row["method"]] = row["rmse"].get<double>();
+  std::printf("[ figure ] study of %s: rmse", name.c_str());
+  for (const auto& [method, value] : rmse) std::printf("  %s %.4g", method.c_str(), value);
+  std::printf("\n");
+  EXPECT_LT(rmse["wavelet:3"], rmse["average"]);
+  EXPECT_LT(rmse["front+tail"], rmse["average"]);
+  if (!haveBrowser()) GTEST_SKIP() << "no chromium (apt package chromium)";
+  const nlohmann::json out = probePage(folder, folder + "/out/study.html", R"JS(
+  const names = pellucid.data.pictures.map(p => p.name);
+  const left = names.indexOf('over'), right = names.indexOf('average');
+  set('left', left); set('right', right);
+  const a = pellucid.data.pictures[left], b = pellucid.data.pictures[right];
+  let worst = 0, squares = 0;
+  for (let y = 0; y < a.height; ++y) for (let x = 0; x < a.width; ++x) {
+    let most = 0;
+    for (let c = 0; c < 3; ++c) {
+      const d = Math.abs(pellucid.valueAt(a, x, y, c) - pellucid.valueAt(b, x, y, c));
+      most = Math.max(most, d); squares += d * d;
+    }
+    if (most > worst) { worst = most; out.x = x; out.y = y; }
+  }
+  out.worst = worst; out.rmse = Math.sqrt(squares / (3 * a.width * a.height));
+  const view = find('view'), heat = find('heat');
+  // Near enough that a pixel of the picture is several of the canvas.
+  const state = pellucid.state, zoom = 8;
+  state.zoom = zoom;
+  state.x = Math.min(Math.max(out.x - 5, 0), a.width * (1 - 1 / zoom));
+  state.y = Math.min(Math.max(out.y - 5, 0), a.height * (1 - 1 / zoom));
+  pellucid.draw();
+  const k = view.width / a.width * zoom;
+  const place = [Math.floor((out.x + 0.5 - state.x) * k), Math.floor((out.y + 0.5 - state.y) * k)];
+  const values = p => [0, 1, 2].map(c => pellucid.valueAt(p, out.x, out.y, c));
+  const brightest = Math.max(...values(a), ...values(b));
+  if (brightest > 1) set('exposure', -Math.ceil(Math.log2(brightest)));
+  set('split', 1); out.left = at(view, ...place);
+  set('split', 0); out.right = at(view, ...place);
+  const exposed = p => values(p).map(v => v * 2 ** state.exposure);
+  out.leftValues = exposed(a); out.rightValues = exposed(b);
+  set('scale', 0); out.hot = at(heat, ...place);
+  out.cells = Array.from(document.querySelectorAll('td')).map(td => td.textContent);
+  out.points = document.querySelectorAll('svg circle').length;)JS");
+  ASSERT_FALSE(out.contains("error")) << out;
+  // Pixels of the page are half floats.
+  EXPECT_NEAR(out["rmse"].get<double>(), rmse["average"], 2e-3 * rmse["average"] + 1e-5);
+  const auto shown = [](double v) {
+    v = std::clamp(v, 0.0, 1.0);
+    return v <= .0031308 ? 255 * 12.92 * v : 255 * (1.055 * std::pow(v, 1 / 2.4) - .055);
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(out["left"][c].get<double>(), shown(out["leftValues"][c].get<double>()), 1.5);
+    EXPECT_NEAR(out["right"][c].get<double>(), shown(out["rightValues"][c].get<double>()), 1.5);
+  }
+  EXPECT_NE(out["left"], out["right"]);
+  EXPECT_NE(out["hot"], nlohmann::json({60, 60, 60}));
+  EXPECT_EQ(out["points"].get<std::size_t>(), rows.size());
+  EXPECT_NE(std::find(out["cells"].begin(), out["cells"].end(), "wavelet:3"), out["cells"].end());
+}
+
+INSTANTIATE_TEST_SUITE_P(Shots, StudyPage, ::testing::Values("bottles", "smoke", "bars", "real"),
+                         [](const auto& shot) { return std::string(shot.param); });
 
 }  // namespace
 }  // namespace pellucid

@@ -3,6 +3,7 @@
 
 #include "composite/over.h"
 #include "composite/tolerance.h"
+#include "gbuffer/gbuffer.h"
 #include "tests/support/layers.h"
 #include "tests/truth/sets.h"
 
@@ -51,7 +52,7 @@ TEST(Tolerance, NeverViolatedOnSixtyThousandStacks) {
       Veil veil(lists.window.width(), 1), truth(lists.window.width(), 1);
       MethodChoice choice;
       choice.weight = weightOf(batch % 2 ? shading::PLD_WEIGHT_EQ5 : shading::PLD_WEIGHT_EQ9);
-      compositeWithin(lists, choice, gbuffer, tolerance, veil, counts);
+      compositeWithin(lists, choice, gbuffer.data, &gbuffer.beauty, nullptr, tolerance, veil, counts);
       compositeSorted(lists, lists.window, truth);
       for (std::size_t i = 0; i < pixels.size(); ++i)
         for (int c = 0; c < 3; ++c) {

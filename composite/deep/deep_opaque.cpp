@@ -1,0 +1,151 @@
+#include "composite/deep/deep_opaque.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "composite/deep/tidy.h"
+#include "gbuffer/deep_io.h"
+#include "shaders/shading.h"
+
+namespace pellucid {
+namespace {
+
+constexpr std::uint64_t kMostAtOnce = std::uint64_t{1} << 21;
+// What floats leave of a pixel that is covered.
+constexpr double kCovered = 1e-6;
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+bool bends(const Fragment& fragment) {
+  return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
+}
+
+}  // namespace
+
+DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit) {
+  const DeepChannels channels = resolveDeep(path);
+  DeepReader reader(path, channels.part, channels.names);
+  DeepOpaque opaque;
+  opaque.display = reader.display();
+  opaque.data = reader.data();
+  const int width = opaque.data.width(), height = opaque.data.height();
+  opaque.flat = Image<glm::vec4>(width, height, glm::vec4(0.0f));
+  opaque.farthest = Image<float>(width, height, kNothing);
+  opaque.offsets.assign(1, 0);
+  std::vector<DeepSample> pixel;
+  for (int y = opaque.data.y0; y < opaque.data.y1;) {
+    const DeepRows rows = reader.read(y, opaque.data.y1, kMostAtOnce);
+    for (std::size_t i = 0; i + 1 < rows.offsets.size(); ++i) {
+      pixel.clear();
+      for (std::uint64_t k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
+        DeepSample sample;
+        if (sampleAt(channels, rows, k, metresPerUnit, sample, opaque.oddities) && sample.z > 0.0)
+          pixel.push_back(sample);
+      }
+      glm::dvec4 left(1.0);
+      glm::dvec3 light(0.0);
+      float farthest = 0.0f;
+      visitTidy(pixel, {}, [&](const DeepSample& piece) {
+        const glm::dvec3 share = glm::dvec3(left) * glm::dvec3(piece.opacity), seen = glm::dvec3(left) * piece.light;
+        light += seen;
+        left *= glm::dvec4(1.0) - piece.opacity;
+        farthest = static_cast<float>(0.5 * (piece.z + piece.zBack));
+        opaque.samples.push_back({farthest, glm::vec3(share), glm::vec3(seen)});
+      });
+      const std::size_t at = opaque.offsets.size() - 1;
+      opaque.offsets.push_back(opaque.samples.size());
+      opaque.flat[at] = glm::vec4(glm::vec3(light), static_cast<float>(1.0 - left.w));
+      if (std::max({left.x, left.y, left.z}) <= kCovered) opaque.farthest[at] = farthest;
+    }
+    y = rows.window.y1;
+  }
+  return opaque;
+}
+
+FragmentLists holdOut(const FragmentLists& lists, const DeepOpaque& opaque) {
+  FragmentLists row;
+  row.offsets.assign(1, 0);
+  std::vector<glm::vec4> solids;
+  const int left = lists.window.x0 - opaque.data.x0, top = lists.window.y0 - opaque.data.y0;
+  std::size_t pixel = 0;
+  for (int y = 0; y < lists.window.height(); ++y)
+    for (int x = 0; x < lists.window.width(); ++x, ++pixel) {
+      const std::uint64_t first = lists.offsets[pixel], last = lists.offsets[pixel + 1];
+      const glm::vec4 solid = lists.solid[pixel];
+      if (first == last && !std::isfinite(solid.a)) continue;
+      const auto upTo = [&](float z) {
+        for (std::uint64_t i = first; i < last; ++i)
+          if (lists.fragments[i].z <= z) row.fragments.push_back(lists.fragments[i]);
+        solids.push_back(solid.a <= z ? solid : glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
+        row.offsets.push_back(row.fragments.size());
+      };
+      const std::size_t own = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(opaque.data.width()) +
+                              static_cast<std::size_t>(left + x);
+      for (std::uint64_t k = opaque.offsets[own]; k < opaque.offsets[own + 1]; ++k) upTo(opaque.samples[k].z);
+      upTo(kNothing);
+    }
+  row.window = {0, 0, static_cast<int>(solids.size()), 1};
+  row.solid = Image<glm::vec4>(row.window.width(), 1);
+  std::copy(solids.begin(), solids.end(), row.solid.row(0));
+  return row;
+}
+
+void addHeldOut(const FragmentLists& lists, const FragmentLists& heldOut, const Veil& row, const DeepOpaque& opaque,
+                const OitPlanes* scatter, Veil& veil, Image<glm::vec3>& lookedUp) {
+  const int left = lists.window.x0 - opaque.data.x0, top = lists.window.y0 - opaque.data.y0;
+  std::size_t pixel = 0, entry = 0;
+  for (int y = 0; y < lists.window.height(); ++y)
+    for (int x = 0; x < lists.window.width(); ++x, ++pixel) {
+      if (lists.offsets[pixel] == lists.offsets[pixel + 1] && !std::isfinite(lists.solid[pixel].a)) continue;
+      const int px = left + x, py = top + y;
+      const std::size_t own = static_cast<std::size_t>(py) * static_cast<std::size_t>(opaque.data.width()) +
+                              static_cast<std::size_t>(px);
+      glm::dvec3 rest(1.0), light(0.0), behind(0.0), transmission(0.0), elsewhere(0.0);
+      float front = kNothing;
+      bool touched = false;
+      float open = 0.0f;
+      for (std::uint64_t k = opaque.offsets[own]; k <= opaque.offsets[own + 1]; ++k, ++entry) {
+        const bool beyond = k == opaque.offsets[own + 1];
+        const glm::dvec3 share = beyond ? glm::max(rest, glm::dvec3(0.0)) : glm::dvec3(opaque.samples[k].share);
+        const auto begin = heldOut.fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.offsets[entry]);
+        const auto end = heldOut.fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.offsets[entry + 1]);
+        const bool covered = row.touched[entry] && std::max({share.x, share.y, share.z}) > (beyond ? kCovered : 0.0);
+        const glm::dvec3 passed = row.touched[entry] ? glm::dvec3(row.transmission[entry]) : glm::dvec3(1.0);
+        rest -= share;
+        if (row.touched[entry]) light += share * glm::dvec3(row.light[entry]);
+        transmission += share * passed;
+        if (covered) {
+          touched = true;
+          front = std::min(front, row.frontZ[entry]);
+        }
+        if (covered && scatter && scattersAt(*scatter, px, py) && std::any_of(begin, end, bends))
+          elsewhere += share * passed;
+        else if (beyond)
+          open = shading::meanOf(glm::vec3(share * passed));
+        else
+          behind += passed * glm::dvec3(opaque.samples[k].light);
+      }
+      if (!touched) continue;
+      veil.light.at(px, py) = glm::vec3(light);
+      veil.transmission.at(px, py) = glm::vec3(transmission);
+      veil.direct.at(px, py) = glm::vec3(0.0f);
+      veil.applied.at(px, py) = glm::vec4(glm::vec3(behind), open);
+      veil.frontZ.at(px, py) = front;
+      veil.touched.at(px, py) = 1;
+      lookedUp.at(px, py) = glm::vec3(elsewhere);
+    }
+}
+
+void showThroughHeldOut(const Lookups& lookups, const Image<glm::vec3>& lookedUp, Veil& veil) {
+  for (int y = 0; y < lookedUp.height(); ++y)
+    for (int x = 0; x < lookedUp.width(); ++x) {
+      const glm::vec3 share = lookedUp.at(x, y);
+      if (share == glm::vec3(0.0f)) continue;
+      const glm::vec4 seen = lookups.at(x, y);
+      for (int c = 0; c < 3; ++c)
+        if (share[c] > 0.0f) veil.applied.at(x, y)[c] += share[c] * seen[c];
+      veil.applied.at(x, y).a += shading::meanOf(share) * (1.0f - seen.a);
+    }
+}
+
+}  // namespace pellucid

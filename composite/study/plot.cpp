@@ -1,0 +1,164 @@
+#include "composite/study/plot.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "gbuffer/atomic_file.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+namespace {
+
+constexpr double kLeastSeconds = 1e-6;
+constexpr double kLeft = 70, kRight = 660, kTop = 20, kBottom = 400, kLabels = 710;
+constexpr const char* kFont = "DejaVuSans";
+constexpr double kTextSize = 12, kDot = 4;
+
+double axis(double value, double low, double high, double from, double to) {
+  return from + (std::log10(value) - low) / (high - low) * (to - from);
+}
+
+// Labels in a column beside the plot, as near to the height of their dots as others leave room for, with lines to them.
+void label(const std::vector<StudyRow>& rows, Plot& plot) {
+  std::vector<std::size_t> order(rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return plot.dots[a].y < plot.dots[b].y; });
+  std::vector<double> y;
+  for (const std::size_t i : order) y.push_back(std::max(plot.dots[i].y, y.empty() ? 0.0 : y.back() + kTextSize));
+  double lowest = kBottom;
+  for (std::size_t k = y.size(); k-- > 0; lowest = y[k] - kTextSize) y[k] = std::min(y[k], lowest);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const PlotDot& dot = plot.dots[order[k]];
+    plot.lines.push_back({dot.x, dot.y, kLabels - 4, y[k], PlotLine::leader});
+    plot.texts.push_back({kLabels, y[k] + 4, rowName(rows[order[k]]), -1});
+  }
+}
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return safe;
+}
+
+}  // namespace
+
+Plot studyPlot(const std::vector<StudyRow>& rows) {
+  double slow = 1e-3, fast = 1e9, worst = 1e-4, least = 1e9;
+  bool exact = false;
+  for (const StudyRow& row : rows) {
+    slow = std::max(slow, row.seconds);
+    fast = std::min(fast, std::max(row.seconds, kLeastSeconds));
+    worst = std::max(worst, row.error.rmse);
+    if (row.error.rmse > 0.0)
+      least = std::min(least, row.error.rmse);
+    else
+      exact = true;
+  }
+  least = std::min(least, worst);
+  // Whole decades, one at least; below them the errors of 0.
+  const double x0 = std::floor(std::log10(fast)), x1 = std::max(std::ceil(std::log10(slow)), x0 + 1);
+  const double y1 = std::ceil(std::log10(worst)), y0 = std::min(std::floor(std::log10(least)), y1 - 1) - (exact ? 1 : 0);
+  const double lowest = std::pow(10, y0);
+  const auto px = [&](double s) { return axis(std::max(s, kLeastSeconds), x0, x1, kLeft, kRight); };
+  const auto py = [&](double e) { return axis(std::max(e, lowest), y0, y1, kBottom, kTop); };
+  Plot plot;
+  for (double d = x0; d <= x1; ++d) {
+    plot.lines.push_back({px(std::pow(10, d)), kTop, px(std::pow(10, d)), kBottom, PlotLine::grid});
+    plot.texts.push_back({px(std::pow(10, d)), kBottom + 16, fmt::format("1e{:.0f}", d), 0});
+  }
+  for (double d = y0; d <= y1; ++d) {
+    plot.lines.push_back({kLeft, py(std::pow(10, d)), kRight, py(std::pow(10, d)), PlotLine::grid});
+    plot.texts.push_back({kLeft - 6, py(std::pow(10, d)) + 4, exact && d == y0 ? "0" : fmt::format("1e{:.0f}", d), 1});
+  }
+  plot.texts.push_back({0.5 * (kLeft + kRight), kBottom + 36, "seconds", 0});
+  plot.texts.push_back({16, 0.5 * (kTop + kBottom), "RMSE against sorted over", 0, true});
+  std::vector<const StudyRow*> front;
+  for (const StudyRow& row : rows)
+    if (row.front) front.push_back(&row);
+  std::sort(front.begin(), front.end(), [](const StudyRow* a, const StudyRow* b) { return a->seconds < b->seconds; });
+  for (std::size_t i = 0; i + 1 < front.size(); ++i)
+    plot.lines.push_back({px(front[i]->seconds), py(front[i]->error.rmse), px(front[i + 1]->seconds),
+                          py(front[i + 1]->error.rmse), PlotLine::front});
+  for (const StudyRow& row : rows) plot.dots.push_back({px(row.seconds), py(row.error.rmse), row.front});
+  label(rows, plot);
+  return plot;
+}
+
+std::string plotSvg(const Plot& plot) {
+  static constexpr const char* kLineColours[] = {"#ddd", "#bbc", "#c33"};
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "font-family=\"sans-serif\" font-size=\"{2}\"><rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
+      plot.width, plot.height, kTextSize);
+  for (const PlotLine& line : plot.lines)
+    svg += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", line.x0, line.y0,
+                       line.x1, line.y1, kLineColours[line.kind]);
+  for (const PlotDot& dot : plot.dots)
+    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", dot.x, dot.y, kDot,
+                       dot.front ? "#c33" : "#456");
+  for (const PlotText& text : plot.texts)
+    svg += fmt::format("<text x=\"{0:.1f}\" y=\"{1:.1f}\" text-anchor=\"{2}\"{3}>{4}</text>\n", text.x, text.y,
+                       text.anchor < 0 ? "start" : text.anchor > 0 ? "end" : "middle",
+                       text.upright ? fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", text.x, text.y) : "",
+                       escaped(text.text));
+  return svg + "</svg>\n";
+}
+
+bool writePlotPng(const std::string& path, const Plot& plot) {
+  // Twice as large, then halved: lines and dots come out smooth.
+  constexpr int kScale = 2;
+  using namespace OIIO;
+  ImageBuf large(ImageSpec(plot.width * kScale, plot.height * kScale, 3, TypeDesc::FLOAT));
+  ImageBufAlgo::fill(large, {1.0f, 1.0f, 1.0f});
+  const float grid[] = {0.87f, 0.87f, 0.87f}, leader[] = {0.73f, 0.73f, 0.8f}, red[] = {0.8f, 0.2f, 0.2f}, blue[] = {0.27f, 0.33f, 0.4f},
+              black[] = {0.0f, 0.0f, 0.0f};
+  const auto at = [](double v) { return static_cast<int>(std::lround(v * kScale)); };
+  for (const PlotLine& line : plot.lines)
+    for (int dx = 0; dx < kScale; ++dx)
+      for (int dy = 0; dy < kScale; ++dy)
+        ImageBufAlgo::render_line(large, at(line.x0) + dx, at(line.y0) + dy, at(line.x1) + dx, at(line.y1) + dy,
+                                  line.kind == PlotLine::front ? red : line.kind == PlotLine::leader ? leader : grid);
+  const int radius = static_cast<int>(kDot) * kScale;
+  for (const PlotDot& dot : plot.dots)
+    for (int y = -radius; y <= radius; ++y) {
+      const int reach = static_cast<int>(std::sqrt(static_cast<double>(radius * radius - y * y)));
+      ImageBufAlgo::render_line(large, at(dot.x) - reach, at(dot.y) + y, at(dot.x) + reach, at(dot.y) + y,
+                                dot.front ? red : blue);
+    }
+  bool labelled = true;
+  for (const PlotText& text : plot.texts) {
+    if (text.upright) {
+      // Written across, then turned.
+      const int length = at(kBottom - kTop), thick = at(1.5 * kTextSize);
+      ImageBuf label(ImageSpec(length, thick, 3, TypeDesc::FLOAT));
+      ImageBufAlgo::fill(label, {1.0f, 1.0f, 1.0f});
+      labelled = ImageBufAlgo::render_text(label, length / 2, at(kTextSize), text.text,
+                                           static_cast<int>(kTextSize) * kScale, kFont, black,
+                                           ImageBufAlgo::TextAlignX::Center) &&
+                 labelled;
+      ImageBufAlgo::paste(large, at(text.x - kTextSize), at(text.y) - length / 2, 0, 0,
+                          ImageBufAlgo::rotate270(label));
+      continue;
+    }
+    const auto align = text.anchor < 0   ? ImageBufAlgo::TextAlignX::Left
+                       : text.anchor > 0 ? ImageBufAlgo::TextAlignX::Right
+                                         : ImageBufAlgo::TextAlignX::Center;
+    labelled = ImageBufAlgo::render_text(large, at(text.x), at(text.y), text.text, static_cast<int>(kTextSize) * kScale,
+                                         kFont, black, align) &&
+               labelled;
+  }
+  const ImageBuf small = ImageBufAlgo::resize(large, "", 0, ROI(0, plot.width, 0, plot.height, 0, 1, 0, 3));
+  AtomicFile file(path);
+  if (!small.write(file.temporary(), TypeDesc::UINT8, "png"))
+    throw ResourceError(fmt::format("{}: cannot be written: {}", path, small.geterror()));
+  file.commit();
+  return labelled;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,39 @@
+// The study's plot: rmse against seconds, both logarithmic, with the Pareto front as a line.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "composite/study/study.h"
+
+namespace pellucid {
+
+struct PlotLine {
+  enum Kind { grid, leader, front };  // a leader runs from a dot to its label
+  double x0, y0, x1, y1;
+  Kind kind;
+};
+struct PlotDot {
+  double x, y;
+  bool front;
+};
+struct PlotText {
+  double x, y;  // of the baseline
+  std::string text;
+  int anchor;  // -1 begins at x, 0 has its middle there, 1 ends there
+  bool upright = false;
+};
+
+// What is drawn, in pixels of a picture of this size.
+struct Plot {
+  int width = 900, height = 450;
+  std::vector<PlotLine> lines;
+  std::vector<PlotDot> dots;
+  std::vector<PlotText> texts;
+};
+
+Plot studyPlot(const std::vector<StudyRow>& rows);
+std::string plotSvg(const Plot& plot);  // self-contained
+// Throws ResourceError when it cannot be written. Without a font on the machine labels are left out; then false.
+bool writePlotPng(const std::string& path, const Plot& plot);
+
+}  // namespace pellucid
