@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "gbuffer/errors.h"
+
 namespace pellucid::samples {
 namespace {
 
@@ -128,22 +130,26 @@ void Glb::addSun(const std::string& node, glm::dvec3 toSun, glm::dvec3 irradianc
 
 std::vector<unsigned char> Glb::bytes() const {
   constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-  std::vector<unsigned char> binary = binary_;
-  binary.resize((binary.size() + 3) / 4 * 4, 0);
+  const std::size_t length = (binary_.size() + 3) / 4 * 4;
   json root = json_;
-  root["buffers"] = json::array({{{"byteLength", binary.size()}}});
+  root["buffers"] = json::array({{{"byteLength", length}}});
   std::string text = root.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   std::vector<unsigned char> out;
+  const std::size_t total = 12 + 8 + text.size() + 8 + length;
+  if (total > 0xffffffffu)
+    throw ResourceError("a GLB of " + std::to_string(total) + " bytes: expected at most 4294967295");
+  out.reserve(total);
   append(out, kMagic);
   append(out, 2);
-  append(out, static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + binary.size()));
+  append(out, static_cast<std::uint32_t>(total));
   append(out, static_cast<std::uint32_t>(text.size()));
   append(out, kJsonChunk);
   out.insert(out.end(), text.begin(), text.end());
-  append(out, static_cast<std::uint32_t>(binary.size()));
+  append(out, static_cast<std::uint32_t>(length));
   append(out, kBinaryChunk);
-  out.insert(out.end(), binary.begin(), binary.end());
+  out.insert(out.end(), binary_.begin(), binary_.end());
+  out.resize(total, 0);
   return out;
 }
 

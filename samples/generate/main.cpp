@@ -1,4 +1,5 @@
-// pellucid_samples OUTDIR [NAME|all [HEIGHT]]: writes OUTDIR/NAME.exr and OUTDIR/NAME.glb, HEIGHT pixels high.
+// pellucid_samples OUTDIR [NAME|all [HEIGHT]] [--hairs N]: writes OUTDIR/NAME.exr and OUTDIR/NAME.glb, HEIGHT pixels
+// high.
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -23,8 +24,8 @@ View resized(View view, int height) {
   return view;
 }
 
-void write(const Entry& entry, const std::string& folder, int height) {
-  const Sample sample = entry.make();
+void write(const Entry& entry, const std::string& folder, int height, std::uint32_t hairs) {
+  const Sample sample = hairs && entry.make == hair ? fineHair(hairs) : entry.make();
   const View view = resized(sample.view, height);
   const std::string stem = folder + "/" + entry.name;
   writeOpaque(stem + ".exr", render(sample.studio, view), view);
@@ -38,27 +39,34 @@ std::string names() {
   return out;
 }
 
-int heightOf(const char* text) {
-  constexpr int kTallest = 4320;
-  int height = 0;
-  const auto [end, error] = std::from_chars(text, text + std::strlen(text), height);
-  if (error != std::errc() || *end != '\0' || height < 1 || height > kTallest)
-    throw UsageError("HEIGHT " + std::string(text) + ": expected 1 to " + std::to_string(kTallest) + " pixels");
-  return height;
+int numberOf(const char* text, const std::string& what, int most) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text, text + std::strlen(text), number);
+  if (error != std::errc() || *end != '\0' || number < 1 || number > most)
+    throw UsageError(what + " " + text + ": expected 1 to " + std::to_string(most));
+  return number;
 }
 
 void run(int count, char** arguments) {
-  if (count < 2 || count > 4) throw UsageError("expected OUTDIR [NAME|all [HEIGHT]], NAME one of " + names());
+  constexpr int kTallest = 4320, kMostHairs = 150000;  // more do not fit into one GLB
+  int hairs = 0;
+  if (count > 3 && std::string(arguments[count - 2]) == "--hairs") {
+    hairs = numberOf(arguments[count - 1], "--hairs", kMostHairs);
+    count -= 2;
+  }
+  if (count < 2 || count > 4)
+    throw UsageError("expected OUTDIR [NAME|all [HEIGHT]] [--hairs N], NAME one of " + names());
   const std::string folder = arguments[1], wanted = count > 2 ? arguments[2] : "all";
-  const int height = count > 3 ? heightOf(arguments[3]) : 0;
+  const int height = count > 3 ? numberOf(arguments[3], "HEIGHT", kTallest) : 0;
   bool known = wanted == "all";
   for (const Entry& entry : kSamples) known = known || wanted == entry.name;
   if (!known) throw UsageError("no sample named '" + wanted + "'; expected one of " + names() + ", or all");
+  if (hairs && wanted != "hair" && wanted != "all") throw UsageError("--hairs: the sample " + wanted + " has none");
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) throw ResourceError(folder + ": no such folder could be made: " + failure.message());
   for (const Entry& entry : kSamples)
-    if (wanted == "all" || wanted == entry.name) write(entry, folder, height);
+    if (wanted == "all" || wanted == entry.name) write(entry, folder, height, static_cast<std::uint32_t>(hairs));
 }
 
 }  // namespace

@@ -21,12 +21,17 @@ Sample smoke();
 Sample foliage();
 Sample frosted();
 Sample ball();
+Sample hair();
+Sample cad();
+Sample clouds();
+Sample fineHair(std::uint32_t hairs);  // the sample `hair` with --hairs: 480 triangles each
 
 struct Entry {
   const char* name;
   Sample (*make)();
 };
 inline const std::vector<Entry> kSamples = {{"bars", bars},       {"bottles", bottles}, {"smoke", smoke},
-                                            {"foliage", foliage}, {"frosted", frosted}, {"ball", ball}};
+                                            {"foliage", foliage}, {"frosted", frosted}, {"ball", ball},
+                                            {"hair", hair},       {"cad", cad},         {"clouds", clouds}};
 
 }  // namespace pellucid::samples

@@ -10,8 +10,8 @@ Camera View::camera() const {
   camera.viewFromWorld = glm::lookAt(eye, target, glm::dvec3(0.0, 1.0, 0.0));
   const double focal = 1.0 / std::tan(0.5 * yfov);
   camera.focal = {focal / aspect(), focal};
-  camera.rangeNear = 0.1;
-  camera.rangeFar = 100.0;
+  camera.rangeNear = nearest;
+  camera.rangeFar = farthest;
   camera.origin = "the sample's view";
   return camera;
 }

@@ -9,6 +9,7 @@ namespace pellucid::samples {
 struct View {
   glm::dvec3 eye{0.0, 0.0, 5.0}, target{0.0};  // world, metres, y up
   double yfov = 0.6;                           // radians
+  double nearest = 0.1, farthest = 100.0;      // metres: what weights are spread over
   int width = 640, height = 360;
 
   Window window() const { return {0, 0, width, height}; }

@@ -88,6 +88,23 @@ TEST_F(Samples, AnUnfitHeightIsRefused) {
   EXPECT_EQ(small.beauty.height(), 90);
 }
 
+TEST_F(Samples, AsManyHairsAsAsked) {
+  for (const char* hairs : {"0", "-1", "200000", "5x", ""}) {
+    const Ended ended = generate("hair", ".", {"90", "--hairs", hairs});
+    EXPECT_EQ(ended.code, 2) << hairs;
+    EXPECT_NE(ended.err.find("--hairs"), std::string::npos) << ended.err;
+  }
+  EXPECT_EQ(generate("bars", ".", {"90", "--hairs", "5"}).code, 2);
+  EXPECT_TRUE(filesIn(folder).empty());
+  std::size_t bytes[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(generate("hair", ".", {"90", "--hairs", i == 0 ? "1" : "11"}).code, 0);
+    bytes[i] = slurp(folder + "/hair.glb").size();
+  }
+  // 480 triangles of 12 bytes and 482 vertices of 40 each, but for a digit here and there in the JSON.
+  EXPECT_NEAR(static_cast<double>(bytes[1] - bytes[0]), 10.0 * (480 * 12 + 482 * 40), 64.0);
+}
+
 // The wall behind the bars faces the camera, so its planar depth is one number: 3 m to z = 0, 1.2 m on to the wall.
 TEST_F(Samples, DepthIsPlanar) {
   ASSERT_EQ(generate("bars").code, 0);
@@ -138,7 +155,7 @@ TEST_F(Samples, SortedTruthMeasuresNothingAgainstItself) {
 }
 
 TEST_F(Samples, TheMainJobRunsOnEach) {
-  for (const std::string name : {"bottles", "smoke"}) {
+  for (const std::string name : {"bottles", "smoke", "cad"}) {
     ASSERT_EQ(generate(name).code, 0);
     const nlohmann::json error = measured(name, {"--aa", "1"});
     std::printf("%s: mean %.3g, rmse %.3g, max %.3g\n", name.c_str(), error["mean"].get<double>(),
