@@ -82,8 +82,7 @@ void registerCurves() {
   std::vector<std::string> names{"over"};
   for (const Method& method : methods()) names.push_back(method.name);
   for (const std::string& name : names)
-    benchmark::RegisterBenchmark(("Layers/" + name).c_str(),
-                                 [name](benchmark::State& state) { curve(state, name); })
+    benchmark::RegisterBenchmark(("Layers/" + name).c_str(), [name](benchmark::State& state) { curve(state, name); })
         ->RangeMultiplier(4)
         ->Range(1, 1024)
         ->Complexity(name == "over" ? benchmark::oNLogN : benchmark::oN)

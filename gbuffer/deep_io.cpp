@@ -132,9 +132,9 @@ struct DeepReader::Impl {
     for (std::vector<float>& channel : rows.channels) channel.resize(samples);
   }
   void pointInto(DeepRows& rows) {
-    memory.pointInto(
-        rows.offsets, static_cast<std::size_t>(rows.window.width()) * static_cast<std::size_t>(rows.window.height()),
-        rows.channels);
+    memory.pointInto(rows.offsets,
+                     static_cast<std::size_t>(rows.window.width()) * static_cast<std::size_t>(rows.window.height()),
+                     rows.channels);
   }
 
   [[noreturn]] void damagedLine(int y) const {

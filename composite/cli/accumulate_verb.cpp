@@ -46,8 +46,8 @@ void accumulate(const AccumulateFlags& flags) {
     throw UsageError(fmt::format("{}: accumulate takes glTF only: found deep samples, which composite takes",
                                  shot->deep[0]->path()));
   if (shot->deepOpaque)
-    throw UsageError(fmt::format("{}: accumulate takes a flat picture: found deep samples, which composite takes",
-                                 flags.opaque));
+    throw UsageError(
+        fmt::format("{}: accumulate takes a flat picture: found deep samples, which composite takes", flags.opaque));
   PassSettings settings;
   settings.surroundings = shot->surroundings;
   flags.scene.applyTo(settings);

@@ -48,7 +48,8 @@ void composite(const CompositeFlags& flags) {
   if (flags.systems != "off" && (flags.tolerance || flags.method.isOver() || flags.method.isExact() ||
                                  shot->deepOpaque || !shot->deep.empty() || !shot->hasScene))
     throw UsageError(
-        "--systems: expected glTF alone on a flat picture, by a blended method in float: the truth, a tolerance and deep "
+        "--systems: expected glTF alone on a flat picture, by a blended method in float: the truth, a tolerance and "
+        "deep "
         "files have no use for passes per system");
   RenderSettings settings;
   settings.samples = flags.samples;

@@ -12,7 +12,7 @@ namespace {
 
 struct FlattenFlags {
   std::vector<std::string> files;
-  std::string output, budget = "64M";
+  std::string output, budget = "64M", type = "float";
   RunFlags run;
 };
 
@@ -45,7 +45,9 @@ void flattenVerb(const FlattenFlags& flags) {
   if (flat.oddities.notFinite) spdlog::info("{} deep samples are not finite and were skipped", flat.oddities.notFinite);
   if (flat.oddities.outOfRange)
     spdlog::info("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
-  stages.time("write", [&] { writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}); });
+  stages.time("write", [&] {
+    say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half"));
+  });
   nlohmann::json report{{"output", flags.output}, {"samples", flat.samples}};
   RenderCounts counts;
   counts.fragments = flat.samples;
@@ -60,6 +62,9 @@ void addFlatten(CLI::App& app) {
   verb->add_option("files", flags->files, "Deep EXR files, in any order")->required();
   verb->add_option("-o,--output", flags->output, "Flat EXR to write")->required();
   verb->add_option("--budget", flags->budget, "Deep samples held at once, in bytes (64M, 2G)")->capture_default_str();
+  verb->add_option("--type", flags->type, "Of the flat channels")
+      ->check(CLI::IsMember({"float", "half"}))
+      ->capture_default_str();
   flags->run.addTo(*verb);
   verb->callback([flags] { flattenVerb(*flags); });
 }

@@ -116,8 +116,8 @@ class ListPainter {
   const GBuffer& gbuffer_;
   RenderCounts& counts_;
   bool sums_, scatters_;
-  OitPlanes planes_;             // the sums, or what scatters
-  Image<glm::vec3> lookedUp_;    // with a deep picture behind
+  OitPlanes planes_;           // the sums, or what scatters
+  Image<glm::vec3> lookedUp_;  // with a deep picture behind
 };
 
 // The flags that ask for this weight, with every bit of it.
@@ -140,8 +140,8 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
         return veilFromSystems(*pass, *settings.systems, settings, sample, gbuffer, counts);
       });
       stages.time("average", [&] { mean.add(veil); });
-    } else if (settings.sortedTruth || settings.listMethod || settings.tolerance || settings.exactSums || settings.deepOpaque ||
-        !deep.empty() || !pass) {
+    } else if (settings.sortedTruth || settings.listMethod || settings.tolerance || settings.exactSums ||
+               settings.deepOpaque || !deep.empty() || !pass) {
       const Veil veil = stages.time(settings.sortedTruth ? "lists and sort" : "lists and method",
                                     [&] { return ListPainter(pass, deep, settings, sample, gbuffer, counts).paint(); });
       stages.time("average", [&] { mean.add(veil); });

@@ -14,13 +14,13 @@ struct RenderSettings {
   PassSettings pass;
   ResolveSettings resolve;
   LookupSettings lookup;
-  bool exactSums = false;                  // --precision exact
-  bool sortedTruth = false;                // `over`
-  int samples = 1;                         // --aa
-  std::optional<ChosenMethod> listMethod;  // a method that works from fragment lists; nothing: the GL pass's sums
-  const DeepOpaque* deepOpaque = nullptr;  // the picture, when it is deep
+  bool exactSums = false;                      // --precision exact
+  bool sortedTruth = false;                    // `over`
+  int samples = 1;                             // --aa
+  std::optional<ChosenMethod> listMethod;      // a method that works from fragment lists; nothing: the GL pass's sums
+  const DeepOpaque* deepOpaque = nullptr;      // the picture, when it is deep
   std::vector<SystemPass>* systems = nullptr;  // each its own pass, farthest first
-  std::optional<double> tolerance;         // certify the sums, composite exactly what they cannot
+  std::optional<double> tolerance;             // certify the sums, composite exactly what they cannot
 };
 
 struct RenderCounts {

@@ -73,9 +73,10 @@ OpaqueFile readPicture(const std::string& path, const ReadOptions& options, cons
       std::all_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; });
   if (!deep) return interpretOpaque(std::move(document), options, camera);
   if (options.depthKind != "planar" || !options.depthChannel.empty() || !options.beautyLayer.empty())
-    throw UsageError(fmt::format("{}: --beauty, --depth and --depth-kind are for flat pictures: found deep samples, "
-                                 "which have one colour and planar depth",
-                                 path));
+    throw UsageError(
+        fmt::format("{}: --beauty, --depth and --depth-kind are for flat pictures: found deep samples, "
+                    "which have one colour and planar depth",
+                    path));
   shot.deepOpaque = std::make_unique<DeepOpaque>(readDeepOpaque(path, options.metresPerUnit));
   const DeepOpaque& samples = *shot.deepOpaque;
   OpaqueFile file;
@@ -88,8 +89,8 @@ OpaqueFile readPicture(const std::string& path, const ReadOptions& options, cons
   file.gbuffer.viewZ = samples.farthest;
   file.document = std::move(document);
   readCamera(file.document.parts[0], options.metresPerUnit, file);
-  file.notes.push_back(fmt::format("a deep picture: its {} samples hold transparent layers out one by one",
-                                   samples.samples.size()));
+  file.notes.push_back(
+      fmt::format("a deep picture: its {} samples hold transparent layers out one by one", samples.samples.size()));
   if (samples.oddities.notFinite)
     file.notes.push_back(fmt::format("{} deep samples are not finite and were skipped", samples.oddities.notFinite));
   return file;

@@ -17,8 +17,8 @@ struct Shot {
   Scene scene;
   Camera camera;
   glm::vec3 surroundings{0.0f};
-  std::unique_ptr<DeepOpaque> deepOpaque;         // when the opaque picture is deep; `opaque` is then what it flattens to
-  bool hasScene = true;                           // false when all transparent inputs are deep files
+  std::unique_ptr<DeepOpaque> deepOpaque;  // when the opaque picture is deep; `opaque` is then what it flattens to
+  bool hasScene = true;                    // false when all transparent inputs are deep files
   std::vector<std::unique_ptr<DeepSource>> deep;  // transparent layers that come as deep EXR
 };
 

@@ -16,7 +16,8 @@ std::vector<std::size_t> groupInstances(const std::string& rule, const std::vect
                                         const Scene& scene, std::vector<std::string>& names) {
   std::vector<std::size_t> file;  // of each instance: files are appended in order
   for (std::size_t i = 0; i < paths.size(); ++i)
-    file.resize(paths.size() > 1 ? file.size() + loadScene({paths[i]}, {}).instances.size() : scene.instances.size(), i);
+    file.resize(paths.size() > 1 ? file.size() + loadScene({paths[i]}, {}).instances.size() : scene.instances.size(),
+                i);
   if (rule == "file") {
     names = paths;
     return file;
@@ -106,8 +107,8 @@ void putOver(const Veil& nearer, Veil& veil) {
 
 }  // namespace
 
-std::vector<SystemPass> splitSystems(const std::string& rule, const std::vector<std::string>& paths,
-                                     const Shot& shot, GlContext& context) {
+std::vector<SystemPass> splitSystems(const std::string& rule, const std::vector<std::string>& paths, const Shot& shot,
+                                     GlContext& context) {
   std::vector<std::string> names;
   const std::vector<std::size_t> group = groupInstances(rule, paths, shot.scene, names);
   std::vector<SystemPass> systems;
@@ -118,8 +119,7 @@ std::vector<SystemPass> splitSystems(const std::string& rule, const std::vector<
     system.z = *z;
     systems.push_back(std::move(system));
   }
-  std::stable_sort(systems.begin(), systems.end(),
-                   [](const SystemPass& a, const SystemPass& b) { return a.z > b.z; });
+  std::stable_sort(systems.begin(), systems.end(), [](const SystemPass& a, const SystemPass& b) { return a.z > b.z; });
   for (SystemPass& system : systems)
     system.pass = std::make_unique<TransparentPass>(context, system.scene, shot.opaque.gbuffer, shot.camera);
   return systems;

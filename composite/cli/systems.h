@@ -18,8 +18,8 @@ struct SystemPass {
 
 // Splits the shot's transparent geometry, farthest first. Geometry and textures are copied.
 //   rule  "file" or "node"
-std::vector<SystemPass> splitSystems(const std::string& rule, const std::vector<std::string>& paths,
-                                     const Shot& shot, GlContext& context);
+std::vector<SystemPass> splitSystems(const std::string& rule, const std::vector<std::string>& paths, const Shot& shot,
+                                     GlContext& context);
 
 // One sample: every system by its own lists and method, the nearer veils over the farther ones. What layers show of the
 // background, and solids, are those of the whole scene.

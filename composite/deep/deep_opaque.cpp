@@ -98,8 +98,8 @@ void addHeldOut(const FragmentLists& lists, const FragmentLists& heldOut, const 
     for (int x = 0; x < lists.window.width(); ++x, ++pixel) {
       if (lists.offsets[pixel] == lists.offsets[pixel + 1] && !std::isfinite(lists.solid[pixel].a)) continue;
       const int px = left + x, py = top + y;
-      const std::size_t own = static_cast<std::size_t>(py) * static_cast<std::size_t>(opaque.data.width()) +
-                              static_cast<std::size_t>(px);
+      const std::size_t own =
+          static_cast<std::size_t>(py) * static_cast<std::size_t>(opaque.data.width()) + static_cast<std::size_t>(px);
       glm::dvec3 rest(1.0), light(0.0), behind(0.0), transmission(0.0), elsewhere(0.0);
       float front = kNothing;
       bool touched = false;

@@ -17,7 +17,7 @@ class DeepSource {
   DeepSource(const std::string& path, double metresPerUnit, const GBuffer& shot, std::uint32_t index);
   const std::string& path() const { return path_; }
   bool mayScatter() const { return channels_.hasRecord(); }  // samples say how they refract and diffuse
-  std::vector<std::string> notes() const;  // what was skipped or clamped so far
+  std::vector<std::string> notes() const;                    // what was skipped or clamped so far
 
  private:
   friend class DeepMerge;

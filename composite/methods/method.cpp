@@ -53,15 +53,19 @@ int bitsMlab(int order) {
 const std::vector<Method>& methods() {
   static const std::vector<Method> table{
       {"sum", mixSum, 0, 0, 0, false, false, false, "double", 1, bitsSum, "WB13 eq. 3 (Meshkin 2007)"},
-      {"average", mixAverage, 0, 0, 0, false, false, false, "double", 1, bitsAverage, "WB13 eq. 4 (Bavoil, Myers 2008)"},
+      {"average", mixAverage, 0, 0, 0, false, false, false, "double", 1, bitsAverage,
+       "WB13 eq. 4 (Bavoil, Myers 2008)"},
       {"blended", mixBlended, 0, 0, 0, false, false, false, "float", 1, bitsBlended, "WB13 eq. 5"},
       {"weighted", mixWeighted, 0, 0, 0, false, true, true, "float", 1, bitsWeighted, "WB13 eq. 6"},
       {"listing3", mixListing3, 0, 0, 0, false, true, false, "half", 1, bitsListing, "WB13 listing 3"},
-      {"listing4", mixListing4, 0, 0, 0, false, true, false, "half", 1, bitsListing, "WB13 listing 4: one blend function"},
+      {"listing4", mixListing4, 0, 0, 0, false, true, false, "half", 1, bitsListing,
+       "WB13 listing 4: one blend function"},
       {"monochrome", mixMonochrome, 0, 0, 0, false, true, false, "half", 1, bitsMonochrome, "WB13: one target"},
       {"unsorted", mixUnsorted, 0, 0, 0, false, false, false, "double", 1, bitsSum, "over in the order submitted"},
-      {"front+tail", mixFrontTail, 0, 0, 0, false, true, true, "float", 2, bitsFrontTail, "exact nearest layer over eq. 6"},
-      {"wavelet", mixWavelet, 2, 0, 6, false, false, false, "double", 3, bitsWavelet, "Aizenshtein, Smal, McGuire 2022"},
+      {"front+tail", mixFrontTail, 0, 0, 0, false, true, true, "float", 2, bitsFrontTail,
+       "exact nearest layer over eq. 6"},
+      {"wavelet", mixWavelet, 2, 0, 6, false, false, false, "double", 3, bitsWavelet,
+       "Aizenshtein, Smal, McGuire 2022"},
       {"moments", mixMoments, 4, 4, 8, true, false, false, "double", 3, bitsMoments, "Münstermann et al. 2018"},
       {"mlab", mixMlab, 4, 1, 64, false, false, false, "double", 1, bitsMlab, "Salvi, Vaidyanathan 2014"},
   };

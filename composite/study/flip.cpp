@@ -26,11 +26,13 @@ constexpr double kFeatureWidth = 0.082;  // degrees
 struct Sensitivity {
   double a[2], b[2];
 };
-constexpr Sensitivity kSensitivity[3] = {{{1, 0}, {0.0047, 1e-5}}, {{1, 0}, {0.0053, 1e-5}}, {{34.1, 13.5}, {0.04, 0.025}}};
+constexpr Sensitivity kSensitivity[3] = {
+    {{1, 0}, {0.0047, 1e-5}}, {{1, 0}, {0.0053, 1e-5}}, {{34.1, 13.5}, {0.04, 0.025}}};
 constexpr double kWidest = 0.04;
 
 // Linear sRGB, D65.
-const glm::dmat3 kXyzFromRgb(dvec3(10135552, 5226144, 475104) / 24577794.0, dvec3(8788810.0 / 24577794, 17577620.0 / 24577794, 8788810.0 / 73733382),
+const glm::dmat3 kXyzFromRgb(dvec3(10135552, 5226144, 475104) / 24577794.0,
+                             dvec3(8788810.0 / 24577794, 17577620.0 / 24577794, 8788810.0 / 73733382),
                              dvec3(4435075.0 / 24577794, 1774030.0 / 24577794, 70074185.0 / 73733382));
 
 dvec3 whitePoint() {
@@ -98,8 +100,9 @@ Plane filtered(const Plane& plane, const Kernel& across, const Kernel& down) {
         for (int x = 0; x < width; ++x) {
           double sum = 0;
           for (int i = -radius; i <= radius; ++i)
-            sum += kernel[static_cast<std::size_t>(i + radius)] *
-                   (vertical ? from.at(x, std::clamp(y + i, 0, height - 1)) : from.at(std::clamp(x + i, 0, width - 1), y));
+            sum +=
+                kernel[static_cast<std::size_t>(i + radius)] *
+                (vertical ? from.at(x, std::clamp(y + i, 0, height - 1)) : from.at(std::clamp(x + i, 0, width - 1), y));
           to.at(x, y) = sum;
         }
     });

@@ -63,7 +63,8 @@ Plot studyPlot(const std::vector<StudyRow>& rows) {
   least = std::min(least, worst);
   // Whole decades, one at least; below them the errors of 0.
   const double x0 = std::floor(std::log10(fast)), x1 = std::max(std::ceil(std::log10(slow)), x0 + 1);
-  const double y1 = std::ceil(std::log10(worst)), y0 = std::min(std::floor(std::log10(least)), y1 - 1) - (exact ? 1 : 0);
+  const double y1 = std::ceil(std::log10(worst)),
+               y0 = std::min(std::floor(std::log10(least)), y1 - 1) - (exact ? 1 : 0);
   const double lowest = std::pow(10, y0);
   const auto px = [&](double s) { return axis(std::max(s, kLeastSeconds), x0, x1, kLeft, kRight); };
   const auto py = [&](double e) { return axis(std::max(e, lowest), y0, y1, kBottom, kTop); };
@@ -97,14 +98,16 @@ std::string plotSvg(const Plot& plot) {
       "font-family=\"sans-serif\" font-size=\"{2}\"><rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
       plot.width, plot.height, kTextSize);
   for (const PlotLine& line : plot.lines)
-    svg += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", line.x0, line.y0,
-                       line.x1, line.y1, kLineColours[line.kind]);
+    svg += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", line.x0,
+                       line.y0, line.x1, line.y1, kLineColours[line.kind]);
   for (const PlotDot& dot : plot.dots)
     svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", dot.x, dot.y, kDot,
                        dot.front ? "#c33" : "#456");
   for (const PlotText& text : plot.texts)
     svg += fmt::format("<text x=\"{0:.1f}\" y=\"{1:.1f}\" text-anchor=\"{2}\"{3}>{4}</text>\n", text.x, text.y,
-                       text.anchor < 0 ? "start" : text.anchor > 0 ? "end" : "middle",
+                       text.anchor < 0   ? "start"
+                       : text.anchor > 0 ? "end"
+                                         : "middle",
                        text.upright ? fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", text.x, text.y) : "",
                        escaped(text.text));
   return svg + "</svg>\n";
@@ -116,14 +119,16 @@ bool writePlotPng(const std::string& path, const Plot& plot) {
   using namespace OIIO;
   ImageBuf large(ImageSpec(plot.width * kScale, plot.height * kScale, 3, TypeDesc::FLOAT));
   ImageBufAlgo::fill(large, {1.0f, 1.0f, 1.0f});
-  const float grid[] = {0.87f, 0.87f, 0.87f}, leader[] = {0.73f, 0.73f, 0.8f}, red[] = {0.8f, 0.2f, 0.2f}, blue[] = {0.27f, 0.33f, 0.4f},
-              black[] = {0.0f, 0.0f, 0.0f};
+  const float grid[] = {0.87f, 0.87f, 0.87f}, leader[] = {0.73f, 0.73f, 0.8f}, red[] = {0.8f, 0.2f, 0.2f},
+              blue[] = {0.27f, 0.33f, 0.4f}, black[] = {0.0f, 0.0f, 0.0f};
   const auto at = [](double v) { return static_cast<int>(std::lround(v * kScale)); };
   for (const PlotLine& line : plot.lines)
     for (int dx = 0; dx < kScale; ++dx)
       for (int dy = 0; dy < kScale; ++dy)
         ImageBufAlgo::render_line(large, at(line.x0) + dx, at(line.y0) + dy, at(line.x1) + dx, at(line.y1) + dy,
-                                  line.kind == PlotLine::front ? red : line.kind == PlotLine::leader ? leader : grid);
+                                  line.kind == PlotLine::front    ? red
+                                  : line.kind == PlotLine::leader ? leader
+                                                                  : grid);
   const int radius = static_cast<int>(kDot) * kScale;
   for (const PlotDot& dot : plot.dots)
     for (int y = -radius; y <= radius; ++y) {
@@ -138,12 +143,11 @@ bool writePlotPng(const std::string& path, const Plot& plot) {
       const int length = at(kBottom - kTop), thick = at(1.5 * kTextSize);
       ImageBuf label(ImageSpec(length, thick, 3, TypeDesc::FLOAT));
       ImageBufAlgo::fill(label, {1.0f, 1.0f, 1.0f});
-      labelled = ImageBufAlgo::render_text(label, length / 2, at(kTextSize), text.text,
-                                           static_cast<int>(kTextSize) * kScale, kFont, black,
-                                           ImageBufAlgo::TextAlignX::Center) &&
-                 labelled;
-      ImageBufAlgo::paste(large, at(text.x - kTextSize), at(text.y) - length / 2, 0, 0,
-                          ImageBufAlgo::rotate270(label));
+      labelled =
+          ImageBufAlgo::render_text(label, length / 2, at(kTextSize), text.text, static_cast<int>(kTextSize) * kScale,
+                                    kFont, black, ImageBufAlgo::TextAlignX::Center) &&
+          labelled;
+      ImageBufAlgo::paste(large, at(text.x - kTextSize), at(text.y) - length / 2, 0, 0, ImageBufAlgo::rotate270(label));
       continue;
     }
     const auto align = text.anchor < 0   ? ImageBufAlgo::TextAlignX::Left

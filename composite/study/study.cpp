@@ -28,7 +28,8 @@ void markFront(std::vector<StudyRow>& rows) {
 }
 
 std::vector<std::string> studyHead() {
-  return {"method", "precision", "samples", "mean", "rmse", "p99", "max", "relMSE", "FLIP", "seconds", "bits/px", "passes", "front"};
+  return {"method", "precision", "samples", "mean",    "rmse",   "p99",  "max",
+          "relMSE", "FLIP",      "seconds", "bits/px", "passes", "front"};
 }
 
 std::vector<std::string> studyCells(const StudyRow& row) {

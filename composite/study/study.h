@@ -10,16 +10,16 @@ namespace pellucid {
 
 struct StudyRow {
   std::string method;
-  std::string precision = "float";  // tier of the sums
-  int samples = 1;                  // a pixel, --aa
-  ErrorStatistics error;            // against the sorted truth at the most samples
-  double relativeSquare = 0;        // mean of (picture - truth)^2 / (truth^2 + 0.01)
-  double flip = 0;                  // mean FLIP, [0,1]
-  double seconds = 0;               // of compositing, without reading and writing
+  std::string precision = "float";                          // tier of the sums
+  int samples = 1;                                          // a pixel, --aa
+  ErrorStatistics error;                                    // against the sorted truth at the most samples
+  double relativeSquare = 0;                                // mean of (picture - truth)^2 / (truth^2 + 0.01)
+  double flip = 0;                                          // mean FLIP, [0,1]
+  double seconds = 0;                                       // of compositing, without reading and writing
   std::vector<std::pair<std::string, double>> stages = {};  // the same by stage
   int bits = 0;                                             // of sums a pixel; 0 where lists are kept
   int passes = 0;                                           // of geometry
-  bool front = false;  // on the Pareto front of rmse against seconds
+  bool front = false;                                       // on the Pareto front of rmse against seconds
 };
 
 // Relative MSE over R, G, B of pixels where both are finite.

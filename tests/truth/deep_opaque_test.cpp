@@ -35,8 +35,8 @@ void writeDeep(const std::string& path, const DeepRows& rows) {
 }
 
 void add(DeepRows& rows, const glm::vec3& light, const glm::vec3& opacity, float z) {
-  const float values[] = {light.r, light.g, light.b, (opacity.r + opacity.g + opacity.b) / 3, opacity.r,
-                          opacity.g, opacity.b, z};
+  const float values[] = {light.r,   light.g,   light.b,   (opacity.r + opacity.g + opacity.b) / 3,
+                          opacity.r, opacity.g, opacity.b, z};
   for (std::size_t c = 0; c < 8; ++c) rows.channels[c].push_back(values[c]);
 }
 
@@ -113,7 +113,8 @@ TEST_F(DeepPicture, EverySampleHoldsLayersOutOnItsOwn) {
   const ExrDocument ours = readExr(folder + "/over.exr"), theirs = readExr(folder + "/truth.exr");
   for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
     double mean = 0;
-    for (const char* channel : {"AR", "AG", "AB"}) mean += static_cast<double>(theirs.parts[0].find(channel)->at(i)) / 3;
+    for (const char* channel : {"AR", "AG", "AB"})
+      mean += static_cast<double>(theirs.parts[0].find(channel)->at(i)) / 3;
     worst = std::max(worst, std::abs(static_cast<double>(ours.parts[0].find("A")->at(i)) - mean));
   }
   // What one depth a pixel makes of it.
@@ -206,7 +207,8 @@ TEST(DeepTiles, HoldTheSameSamples) {
       ASSERT_GT(band.window.y1, y);
       for (int row = y; row < band.window.y1; ++row)
         for (int x = 0; x < kWidth; ++x) {
-          const auto there = static_cast<std::size_t>(row * kWidth + x), here = there - static_cast<std::size_t>(y * kWidth);
+          const auto there = static_cast<std::size_t>(row * kWidth + x),
+                     here = there - static_cast<std::size_t>(y * kWidth);
           ASSERT_EQ(band.offsets[here + 1] - band.offsets[here], rows.offsets[there + 1] - rows.offsets[there]);
           for (std::uint64_t k = 0; k < band.offsets[here + 1] - band.offsets[here]; ++k)
             for (std::size_t c = 0; c < kNames.size(); ++c)

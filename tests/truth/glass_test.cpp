@@ -46,9 +46,7 @@ class Glass : public ::testing::Test {
     EXPECT_EQ(ended.code, 0) << ended.err;
     return ended;
   }
-  Image<glm::vec4> picture(const std::string& name) const {
-    return readOpaque(folder + "/" + name, {}).gbuffer.beauty;
-  }
+  Image<glm::vec4> picture(const std::string& name) const { return readOpaque(folder + "/" + name, {}).gbuffer.beauty; }
   ErrorStatistics difference(const std::string& a, const std::string& b) const {
     return measureError(picture(a), picture(b));
   }
@@ -59,8 +57,8 @@ class Glass : public ::testing::Test {
 
 TEST_F(Glass, OneLayerOverASolidIsTheTruthByEveryMethod) {
   writeGlb(folder + "/pane.glb", paneAndSolid());
-  const std::vector<std::string> over{"composite", "opaque.exr", "pane.glb", "-o", "over.exr", "--aa",
-                                      "1",         "--method",   "over"};
+  const std::vector<std::string> over{"composite", "opaque.exr", "pane.glb", "-o",  "over.exr",
+                                      "--aa",      "1",          "--method", "over"};
   run(over);
   std::vector<std::string> off = over;
   off[4] = "off.exr";

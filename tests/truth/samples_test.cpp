@@ -31,8 +31,8 @@ class Shots : public ::testing::TestWithParam<const char*> {
       glass = assets() + "/blender/transparent_unlit.glb";
     } else {
       RunOptions generator;
-    generator.program = "pellucid_samples";
-    ASSERT_EQ(runProgram({folder, name, "180"}, generator).code, 0);
+      generator.program = "pellucid_samples";
+      ASSERT_EQ(runProgram({folder, name, "180"}, generator).code, 0);
     }
   }
   nlohmann::json measured(std::vector<std::string> flags) {
@@ -74,9 +74,9 @@ TEST_P(Shots, FittedWeightIsWithinTwoPercentOfTheBestListed) {
   Veil truth(lists.window.width(), lists.window.height());
   compositeSorted(lists, lists.window, truth);
   const std::pair<const char*, int> kinds[] = {
-      {"eq5", shading::PLD_WEIGHT_EQ5},     {"eq7", shading::PLD_WEIGHT_EQ7},   {"eq8", shading::PLD_WEIGHT_EQ8},
-      {"eq9", shading::PLD_WEIGHT_EQ9},     {"eq10", shading::PLD_WEIGHT_EQ10}, {"eq7z", shading::PLD_WEIGHT_EQ7Z},
-      {"eq8z", shading::PLD_WEIGHT_EQ8Z},   {"eq9z", shading::PLD_WEIGHT_EQ9Z}, {"eq10z", shading::PLD_WEIGHT_EQ10Z},
+      {"eq5", shading::PLD_WEIGHT_EQ5},        {"eq7", shading::PLD_WEIGHT_EQ7},   {"eq8", shading::PLD_WEIGHT_EQ8},
+      {"eq9", shading::PLD_WEIGHT_EQ9},        {"eq10", shading::PLD_WEIGHT_EQ10}, {"eq7z", shading::PLD_WEIGHT_EQ7Z},
+      {"eq8z", shading::PLD_WEIGHT_EQ8Z},      {"eq9z", shading::PLD_WEIGHT_EQ9Z}, {"eq10z", shading::PLD_WEIGHT_EQ10Z},
       {"uniform", shading::PLD_WEIGHT_UNIFORM}};
   double best = 1e9;
   const char* bestName = "";
@@ -95,8 +95,8 @@ TEST_P(Shots, ToleranceIsNeverViolated) {
   const nlohmann::json report = measured({"--tolerance", std::to_string(tolerance)});
   const Image<glm::vec4> within = readOpaque(folder + "/out.exr", {}).gbuffer.beauty;
   const nlohmann::json weighted = measured({});
-  const Ended over = runProgram({"composite", opaque, glass, "-o", folder + "/over.exr", "--aa", "1", "--method",
-                                 "over"});
+  const Ended over =
+      runProgram({"composite", opaque, glass, "-o", folder + "/over.exr", "--aa", "1", "--method", "over"});
   ASSERT_EQ(over.code, 0) << over.err;
   const Image<glm::vec4> truth = readOpaque(folder + "/over.exr", {}).gbuffer.beauty;
   double worst = 0;
@@ -109,18 +109,19 @@ TEST_P(Shots, ToleranceIsNeverViolated) {
     const nlohmann::json& stages = from["statistics"]["seconds"];
     return stages.contains(stage) ? stages[stage].get<double>() : 0.0;
   };
-  std::printf("[ figure ] %s: --tolerance .004, worst %.5f, %zu certified, %zu recomputed; %.3f s, over %.3f s, "
-              "weighted %.3f s\n",
-              name.c_str(), worst, report["tolerance"]["certified"].get<std::size_t>(),
-              report["tolerance"]["recomputed"].get<std::size_t>(), seconds(report, "lists and method"),
-              seconds(report, "truth: lists and sort"),
-              seconds(weighted, "transparent pass") + seconds(weighted, "resolve"));
+  std::printf(
+      "[ figure ] %s: --tolerance .004, worst %.5f, %zu certified, %zu recomputed; %.3f s, over %.3f s, "
+      "weighted %.3f s\n",
+      name.c_str(), worst, report["tolerance"]["certified"].get<std::size_t>(),
+      report["tolerance"]["recomputed"].get<std::size_t>(), seconds(report, "lists and method"),
+      seconds(report, "truth: lists and sort"), seconds(weighted, "transparent pass") + seconds(weighted, "resolve"));
   // Pictures of the samples are half floats, which round by up to 2^-11 of the value, in both.
   EXPECT_LE(worst, tolerance + (name == "real" ? 1e-6 : 2 * 0x1p-11));
   EXPECT_LE(report["error"]["max"].get<double>(), std::max(worst, tolerance) + 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Shots, ::testing::Values("bars", "bottles", "frosted", "ball", "smoke", "foliage", "real"),
+INSTANTIATE_TEST_SUITE_P(All, Shots,
+                         ::testing::Values("bars", "bottles", "frosted", "ball", "smoke", "foliage", "real"),
                          [](const auto& shot) { return std::string(shot.param); });
 
 }  // namespace

@@ -123,8 +123,8 @@ TEST(Study, SamplesAndTiersAreRowsOfTheirOwn) {
   EXPECT_EQ(by["over double 4"]["rmse"], 0.0);
   EXPECT_GT(by["over double 1"]["rmse"].get<double>(), 1e-3);  // jagged edges against smooth ones
   EXPECT_GT(by["phenomenological float 1"]["rmse"].get<double>(), by["phenomenological float 4"]["rmse"].get<double>());
-  EXPECT_NEAR(by["phenomenological exact 4"]["rmse"].get<double>(), by["phenomenological float 4"]["rmse"].get<double>(),
-              1e-5);
+  EXPECT_NEAR(by["phenomenological exact 4"]["rmse"].get<double>(),
+              by["phenomenological float 4"]["rmse"].get<double>(), 1e-5);
   EXPECT_EQ(by["listing3 half 1"]["bitsPerPixel"], 80);
   EXPECT_EQ(runProgram({"study", "opaque.exr", "glass.glb", "-o", "out", "--aa", "0"}, options).code, 2);
 }
@@ -147,7 +147,8 @@ TEST(WeightAuto, WhatItPrintsAsksForTheSamePicture) {
   std::istringstream words(line);
   for (std::string word; words >> word;) arguments.push_back(word);
   ASSERT_EQ(runProgram(arguments, options).code, 0) << line;
-  const Ended same = runProgram({"compare", "a.exr", "b.exr", "--fail", "0", "--warn", "0", "--metadata", "ignore"}, options);
+  const Ended same =
+      runProgram({"compare", "a.exr", "b.exr", "--fail", "0", "--warn", "0", "--metadata", "ignore"}, options);
   EXPECT_EQ(same.code, 0) << same.out << same.err;
 }
 
