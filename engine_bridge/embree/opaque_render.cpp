@@ -84,7 +84,7 @@ std::optional<OpaqueRenderer::Seen> OpaqueRenderer::look(const Ray& ray, std::ui
   ShadePoint& point = seen.point;
   point.position = glm::vec3(ray.origin + hit->z * ray.direction);
   point.toEye = rays_.orthographic() ? glm::vec3(0, 0, 1) : glm::normalize(-point.position);
-  point.normal = shading::normalTowardsEye(attributes.normal, hit->front, point.toEye);
+  point.normal = sampler_.normalAt(primitive.material, attributes, hit->front, point.toEye);
   const glm::dvec3 flat =
       glm::normalize(glm::cross(corners.p[1] - corners.p[0], corners.p[2] - corners.p[0])) * (hit->front ? 1.0 : -1.0);
   point.flat = glm::vec3(flat);

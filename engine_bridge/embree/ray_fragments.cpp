@@ -96,7 +96,7 @@ std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, cons
     reflected = surface.baseColor;
   } else {
     const glm::vec3 toEye = rays.orthographic() ? glm::vec3(0, 0, 1) : glm::normalize(-position);
-    const glm::vec3 normal = shading::normalTowardsEye(attributes.normal, crossing.hit.front, toEye);
+    const glm::vec3 normal = sampler.normalAt(primitive.material, attributes, crossing.hit.front, toEye);
     cosEye = std::clamp(glm::dot(normal, toEye), shading::PLD_GRAZING, 1.0f);
     reflected = shading::reflectSurroundings(surface, cosEye) * settings.surroundings;
     for (const PunctualLight& light : lights) {

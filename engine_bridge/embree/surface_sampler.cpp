@@ -17,6 +17,11 @@ Attributes attributesAt(const Primitive& primitive, const Placed& placed, std::s
   result.uv[1] = between([](const Vertex& vertex) { return vertex.uv[1]; });
   result.colour = between([](const Vertex& vertex) { return vertex.colour; });
   result.normal = placed.normalFromObject * normal;
+  result.tangent = glm::vec4(0.0f);
+  if (corners[0]->tangent != glm::vec2(0.0f)) {
+    const glm::vec4 tangent = between([](const Vertex& vertex) { return shading::unpackTangent(vertex.tangent); });
+    result.tangent = glm::vec4(glm::mat3(placed.viewFromObject) * glm::vec3(tangent), tangent.w);
+  }
   return result;
 }
 
@@ -44,6 +49,14 @@ float SurfaceSampler::alphaAt(int material, const Attributes& attributes) const 
   return baseAt(scene_.materials[index], blocks_[index], attributes).a;
 }
 
+glm::vec3 SurfaceSampler::normalAt(int index, const Attributes& attributes, bool front, glm::vec3 toEye) const {
+  const Material& material = scene_.materials[static_cast<std::size_t>(index)];
+  const MaterialBlock& block = blocks_[static_cast<std::size_t>(index)];
+  if (material.normalTexture.texture < 0) return shading::normalTowardsEye(attributes.normal, front, toEye);
+  const glm::vec3 found(texel(material.normalTexture, 5, block, attributes));
+  return shading::bumpedTowardsEye(attributes.normal, attributes.tangent, found, block.covering.b, front, toEye);
+}
+
 shading::Surface SurfaceSampler::surfaceAt(int index, const Attributes& attributes, float thicknessScale, bool front,
                                            RimKind rim, float alphaWidth) const {
   const Material& material = scene_.materials[static_cast<std::size_t>(index)];
@@ -55,6 +68,7 @@ shading::Surface SurfaceSampler::surfaceAt(int index, const Attributes& attribut
   point.roughness = block.interface_.r;
   point.transmission = block.interface_.g;
   point.ior = block.interface_.b;
+  point.specular = block.specular;
   if (material.metallicRoughnessTexture.texture >= 0) {
     const glm::vec4 value = texel(material.metallicRoughnessTexture, 1, block, attributes);
     point.roughness *= value.g;

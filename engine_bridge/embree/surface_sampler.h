@@ -13,7 +13,8 @@ namespace pellucid::rays {
 
 // Vertex attributes at a hit.
 struct Attributes {
-  glm::vec3 normal;  // view space, any length
+  glm::vec3 normal;   // view space, any length
+  glm::vec4 tangent;  // the same; w handedness; all 0 for none
   glm::vec2 uv[2];
   glm::vec4 colour;
 };
@@ -27,6 +28,8 @@ class SurfaceSampler {
 
   // Alpha before the mask's cut, base colour, texture and vertex colour together.
   float alphaAt(int material, const Attributes& attributes) const;
+  // Unit, on the side of the eye, normal texture included.
+  glm::vec3 normalAt(int material, const Attributes& attributes, bool front, glm::vec3 toEye) const;
   //   alphaWidth  how much alpha changes over one pixel, for the smooth rims of masks
   shading::Surface surfaceAt(int material, const Attributes& attributes, float thicknessScale, bool front, RimKind rim,
                              float alphaWidth) const;

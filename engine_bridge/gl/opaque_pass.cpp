@@ -39,8 +39,9 @@ UploadedPrimitive upload(const Primitive& primitive) {
   const std::pair<GLint, std::size_t> attributes[] = {{3, offsetof(Vertex, position)},
                                                       {3, offsetof(Vertex, normal)},
                                                       {4, offsetof(Vertex, uv)},
-                                                      {4, offsetof(Vertex, colour)}};
-  for (GLuint i = 0; i < 4; ++i) {
+                                                      {4, offsetof(Vertex, colour)},
+                                                      {2, offsetof(Vertex, tangent)}};
+  for (GLuint i = 0; i < std::size(attributes); ++i) {
     glEnableVertexArrayAttrib(array, i);
     glVertexArrayAttribFormat(array, i, attributes[i].first, GL_FLOAT, GL_FALSE,
                               static_cast<GLuint>(attributes[i].second));

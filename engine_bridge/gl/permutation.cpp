@@ -20,6 +20,7 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   const bool transmits = material.transmission > 0.0f;
   define("BASE_TEXTURE", material.baseColorTexture.texture >= 0);
   define("METALLIC_ROUGHNESS_TEXTURE", lit && material.metallicRoughnessTexture.texture >= 0);
+  define("NORMAL_TEXTURE", lit && material.normalTexture.texture >= 0);
   define("EMISSIVE_TEXTURE", lit && material.emissiveTexture.texture >= 0 && material.emission != glm::vec3(0.0f));
   define("TRANSMISSION_TEXTURE", transmits && material.transmissionTexture.texture >= 0);
   define("VOLUME", transmits && hasVolume(material));

@@ -32,12 +32,17 @@ GLint wrapOf(Wrap wrap) {
   throw std::logic_error("a texture wraps in no known way");
 }
 
-void referencesOf(const Material& material, int references[5]) {
+// Texture units, as shaders/gl/material.glsl numbers them. 5 and 6 are the frame's.
+constexpr int kReferences = 6;
+constexpr GLuint kUnits[kReferences] = {0, 1, 2, 3, 4, 10};
+
+void referencesOf(const Material& material, int references[kReferences]) {
   references[0] = material.baseColorTexture.texture;
   references[1] = material.metallicRoughnessTexture.texture;
   references[2] = material.emissiveTexture.texture;
   references[3] = material.transmissionTexture.texture;
   references[4] = material.thicknessTexture.texture;
+  references[5] = material.normalTexture.texture;
 }
 
 }  // namespace
@@ -47,7 +52,7 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   for (const Material& material : scene.materials) {
     if (material.transparent() == opaque) continue;
-    int references[5];
+    int references[kReferences];
     referencesOf(material, references);
     for (const int index : references) {
       if (index < 0 || uploaded_.count(index)) continue;
@@ -93,17 +98,17 @@ const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, Textu
 }
 
 void SceneTextures::bind(const Material& material, TextureFilter filter) {
-  int references[5];
+  int references[kReferences];
   referencesOf(material, references);
-  for (GLuint unit = 0; unit < 5; ++unit) {
-    if (references[unit] < 0) continue;
-    Uploaded& uploaded = uploaded_.at(references[unit]);
+  for (int i = 0; i < kReferences; ++i) {
+    if (references[i] < 0) continue;
+    Uploaded& uploaded = uploaded_.at(references[i]);
     if (filter == TextureFilter::mipmap && !uploaded.mipmaps) {
       glGenerateTextureMipmap(uploaded.texture.name());
       uploaded.mipmaps = true;
     }
-    glBindTextureUnit(unit, uploaded.texture.name());
-    glBindSampler(unit, samplerFor(scene_.textures[static_cast<std::size_t>(references[unit])], filter).name());
+    glBindTextureUnit(kUnits[i], uploaded.texture.name());
+    glBindSampler(kUnits[i], samplerFor(scene_.textures[static_cast<std::size_t>(references[i])], filter).name());
   }
 }
 

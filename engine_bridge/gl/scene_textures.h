@@ -19,7 +19,7 @@ class SceneTextures {
   // that the device cannot hold.
   explicit SceneTextures(const Scene& scene, bool opaque = false);
 
-  // Binds a material's textures to units 0-4, as shaders/gl/material.glsl numbers them.
+  // Binds a material's textures to their units, as shaders/gl/material.glsl numbers them.
   void bind(const Material& material, TextureFilter filter);
   // Of texture `index`; all 1 for -1, as a missing texture counts in a product.
   TexelRange range(int index) const;

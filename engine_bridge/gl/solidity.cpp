@@ -38,6 +38,8 @@ bool canBeSolid(const Material& material, const TexelRange& colours, const Scene
   if (!material.unlit) {
     const TexelRange metallic = textures.range(material.metallicRoughnessTexture.texture);
     if (material.metallic * metallic.most.b >= 1.0f - kRounding || material.ior > kMirrorIor) return true;
+    // A tinted reflection may leave nothing to enter.
+    if (material.specular > 1.0f - kRounding && material.specularColor != glm::vec3(1.0f)) return true;
   }
   const float thickness = textures.range(material.thicknessTexture.texture).most.g;
   for (int channel = 0; channel < 3; ++channel) {

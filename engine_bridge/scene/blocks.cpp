@@ -37,7 +37,8 @@ MaterialBlock materialBlock(const Material& material) {
   block.interface_ = {material.roughness, material.transmission, material.ior, material.alphaCutoff};
   block.volume = glm::vec4(material.attenuationColor,
                            hasVolume(material) ? material.thickness / material.attenuationDistance : 0.0f);
-  block.covering = {material.coverage.value_or(1.0f), material.additive ? 1.0f : 0.0f, 0.0f, 0.0f};
+  block.covering = {material.coverage.value_or(1.0f), material.additive ? 1.0f : 0.0f, material.normalScale, 0.0f};
+  block.specular = glm::vec4(material.specularColor, material.specular);
   // One that states no collimation and does not diffuse is clear.
   block.scattering = {material.collimation ? *material.collimation
                       : diffuses(material) ? -1.0f
@@ -45,9 +46,9 @@ MaterialBlock materialBlock(const Material& material) {
                       material.diffuseTransmission, refracts(material) ? 1.0f / material.ior : 1.0f,
                       material.thickness};
   const TextureRef* references[] = {&material.baseColorTexture, &material.metallicRoughnessTexture,
-                                    &material.emissiveTexture, &material.transmissionTexture,
-                                    &material.thicknessTexture};
-  for (std::size_t slot = 0; slot < 5; ++slot) putTransform(block, slot, *references[slot]);
+                                    &material.emissiveTexture,  &material.transmissionTexture,
+                                    &material.thicknessTexture, &material.normalTexture};
+  for (std::size_t slot = 0; slot < std::size(references); ++slot) putTransform(block, slot, *references[slot]);
   return block;
 }
 

@@ -15,11 +15,12 @@ struct MaterialBlock {
   glm::vec4 emission;    // a: metallic
   glm::vec4 interface_;  // roughness, transmission, ior, alpha cutoff
   glm::vec4 volume;      // attenuation colour; thickness over attenuation distance
-  glm::vec4 covering;    // factor on coverage; 1 for additive
-  glm::vec4 uvTransforms[10];
+  glm::vec4 covering;    // factor on coverage; 1 for additive; scale of normals
+  glm::vec4 specular;    // tint head-on, strength
+  glm::vec4 uvTransforms[12];
   glm::vec4 scattering;  // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
 };
-static_assert(sizeof(MaterialBlock) == 16 * 16);
+static_assert(sizeof(MaterialBlock) == 19 * 16);
 
 using shading::PunctualLight;
 static_assert(sizeof(PunctualLight) == 64);

@@ -55,7 +55,6 @@ struct MaterialReader {
     if (const std::optional<JsonView> normals = source.find("normalTexture")) {
       material.normalTexture = texture(source, "normalTexture", TexelUse::data);
       material.normalScale = normals->number("scale", 1.0f, -kMostNormalScale, kMostNormalScale, notes);
-      note("its normal texture is not used");
     }
   }
 
@@ -81,8 +80,6 @@ struct MaterialReader {
     if (const auto specular = source.extension("KHR_materials_specular")) {
       material.specular = specular->number("specularFactor", 1.0f, 0.0f, 1.0f, notes);
       material.specularColor = specular->colour("specularColorFactor", glm::vec3(1.0f), 0.0f, kMostRadiance, notes);
-      if (material.specular != 1.0f || material.specularColor != glm::vec3(1.0f))
-        note("its specular extension is not used; it reflects as its ior says");
       if (specular->find("specularTexture") || specular->find("specularColorTexture"))
         note("the textures of its specular extension are not used; its factors are");
     }

@@ -8,8 +8,9 @@ layout(std140, binding = 1) uniform MaterialValues {
   vec4 emission;            // rgb radiance; a metallic
   vec4 interface_;          // roughness, transmission, ior, alpha cutoff
   vec4 volume;              // rgb attenuation colour; a thickness over attenuation distance, object space
-  vec4 covering;            // r factor on coverage, g 1 for a material that only adds light
-  vec4 uvTransforms[10];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
+  vec4 covering;            // r factor on coverage, g 1 for a material that only adds light, b scale of normals
+  vec4 specular;            // tint head-on, strength
+  vec4 uvTransforms[12];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
   vec4 scattering;          // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
 } material;
 
@@ -18,11 +19,16 @@ layout(binding = 1) uniform sampler2D metallicRoughnessTexture;
 layout(binding = 2) uniform sampler2D emissiveTexture;
 layout(binding = 3) uniform sampler2D transmissionTexture;
 layout(binding = 4) uniform sampler2D thicknessTexture;
+layout(binding = 10) uniform sampler2D normalTexture;
 
 layout(location = 0) in vec3 viewPosition;
 layout(location = 1) in vec3 viewNormal;
 layout(location = 2) in vec4 textureUv;
 layout(location = 3) in vec4 vertexColour;
+#ifdef NORMAL_TEXTURE
+layout(location = 7) in vec4 viewTangent;  // w handedness
+vec3 normalTexel;                          // surfaceHere() fetches it
+#endif
 
 uniform float thicknessScale;  // metres per unit of object space
 
@@ -51,9 +57,22 @@ float coverageOf(float alpha) {
   return covered * material.covering.r;
 }
 
+// After surfaceHere(). Unit, on the side of the eye.
+vec3 normalHere(vec3 toEye) {
+#ifdef NORMAL_TEXTURE
+  return bumpedTowardsEye(viewNormal, viewTangent, normalTexel, material.covering.b, gl_FrontFacing, toEye);
+#else
+  return normalTowardsEye(viewNormal, gl_FrontFacing, toEye);
+#endif
+}
+
 // Takes derivatives: to be called before any discard.
 Surface surfaceHere() {
   MaterialPoint point;
+  point.specular = material.specular;
+#ifdef NORMAL_TEXTURE
+  normalTexel = texture(normalTexture, uvOf(5)).rgb;
+#endif
   point.base = material.baseColor;
   point.emission = material.emission.rgb;
   point.metallic = material.emission.a;

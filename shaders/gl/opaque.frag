@@ -21,7 +21,7 @@ void main() {
   // Of orthographic cameras too, whose clip space has no depth.
   gl_FragDepth = kClipNear / z;
   vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
-  vec3 normal = normalTowardsEye(viewNormal, gl_FrontFacing, toEye);
+  vec3 normal = normalHere(toEye);
 #ifdef OUTPUT_SURFACE
   normalZ = vec4(normal, z);
   albedo = vec4(surface.baseColor, 1.0f);

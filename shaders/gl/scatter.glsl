@@ -22,7 +22,7 @@ Scatter scatterHere(Layer layer, Surface surface, ivec2 pixel) {
   // Entering faces only: along the ray that has not been bent, back faces would reflect all.
   if (gl_FrontFacing && material.scattering.z != 1.0f) {
     vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
-    vec3 normal = normalTowardsEye(viewNormal, true, toEye);
+    vec3 normal = normalHere(toEye);
     RefractionSettings settings;
     settings.mode = int(refraction.x);
     settings.distance = refraction.y;

@@ -30,7 +30,7 @@ void main() {
   reflected = surface.baseColor;
 #else
   vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
-  vec3 normal = normalTowardsEye(viewNormal, gl_FrontFacing, toEye);
+  vec3 normal = normalHere(toEye);
   cosEye = clamp(dot(normal, toEye), PLD_GRAZING, 1.0f);
 #ifdef SURROUNDINGS
   reflected = reflectSurroundings(surface, cosEye) * surroundings.rgb;

@@ -9,6 +9,9 @@ layout(location = 0) out vec3 viewPosition;
 layout(location = 1) out vec3 viewNormal;
 layout(location = 2) out vec4 textureUv;
 layout(location = 3) out vec4 vertexColour;
+#ifdef NORMAL_TEXTURE
+layout(location = 7) out vec4 viewTangent;
+#endif
 invariant gl_Position;
 
 vec4 clipOf(vec3 pObject) {
@@ -69,5 +72,11 @@ void main() {
   viewNormal = normalFromObject * normal;
   textureUv = uv;
   vertexColour = colour;
+#ifdef NORMAL_TEXTURE
+#ifndef EXACT_COVERAGE
+  vec4 tangent = unpackTangent(packedTangent);
+#endif
+  viewTangent = vec4(mat3(viewFromObject) * tangent.xyz, tangent.w);
+#endif
   gl_Position = clipOf(position);
 }

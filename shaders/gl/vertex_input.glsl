@@ -1,13 +1,16 @@
 #pragma once
 // A vertex, from attributes; or pulled from storage, where each triangle must know its number: gl_PrimitiveID does not
 // survive clipping on Mesa's software rasteriser.
+#ifdef NORMAL_TEXTURE
+#include "shared/surface.glsl"
+#endif
 #ifdef EXACT_COVERAGE
 // Mirrors Vertex in engine_bridge/scene/scene.h, 64 bytes.
 struct PulledVertex {
   vec4 positionNormalX;
   vec4 normalYzUv0;
   vec4 uv1ColourRg;
-  vec4 colourBaSpare;
+  vec4 colourBaTangent;
 };
 layout(std430, binding = 5) readonly buffer Vertices { PulledVertex vertices[]; };
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
@@ -15,7 +18,7 @@ layout(std430, binding = 2) readonly buffer TriangleNumbers { uint triangleNumbe
 
 layout(location = 4) flat out uint triangleNumber;
 vec3 position, normal;
-vec4 uv, colour;
+vec4 uv, colour, tangent;
 
 vec3 positionAt(int corner) { return vertices[indices[corner]].positionNormalX.xyz; }
 
@@ -25,12 +28,16 @@ void fetchVertex(int first, vec3 share) {
   normal = vec3(0.0f);
   uv = vec4(0.0f);
   colour = vec4(0.0f);
+  tangent = vec4(0.0f);
   for (int k = 0; k < 3; ++k) {
     PulledVertex v = vertices[indices[first + k]];
     position += share[k] * v.positionNormalX.xyz;
     normal += share[k] * vec3(v.positionNormalX.w, v.normalYzUv0.xy);
     uv += share[k] * vec4(v.normalYzUv0.zw, v.uv1ColourRg.xy);
-    colour += share[k] * vec4(v.uv1ColourRg.zw, v.colourBaSpare.xy);
+    colour += share[k] * vec4(v.uv1ColourRg.zw, v.colourBaTangent.xy);
+#ifdef NORMAL_TEXTURE
+    tangent += share[k] * unpackTangent(v.colourBaTangent.zw);
+#endif
   }
   triangleNumber = triangleNumbers[first / 3];
 }
@@ -39,4 +46,5 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 uv;  // TEXCOORD_0, TEXCOORD_1
 layout(location = 3) in vec4 colour;
+layout(location = 4) in vec2 packedTangent;
 #endif

@@ -16,6 +16,7 @@ struct MaterialPoint {
   float roughness;
   float transmission;
   float ior;
+  vec4 specular;  // tint head-on, strength
 };
 
 // Beer-Lambert along `ratio` attenuation distances, one channel.
@@ -45,6 +46,7 @@ PLD_FN Surface surfaceOf(MaterialPoint point, float coverage, vec3 attenuation, 
   surface.coverage = coverage;
   surface.attenuation = attenuation;
   surface.transmission = clamp(point.transmission, 0.0f, 1.0f);
+  surface.specular = point.specular;
   if (unlit) {
     surface.baseColor = max(vec3(point.base), vec3(0.0f));
     surface.emission = vec3(0.0f);
@@ -66,4 +68,33 @@ PLD_FN Surface surfaceOf(MaterialPoint point, float coverage, vec3 attenuation, 
 PLD_FN vec3 normalTowardsEye(vec3 interpolated, bool front, vec3 toEye) {
   vec3 outward = front ? interpolated : -interpolated;
   return dot(outward, outward) > 0.0f ? normalize(outward) : toEye;
+}
+
+// What a normal texture makes of a normal.
+//   normal   unit, on the side that the file calls front
+//   tangent  xyz towards rising u, any length, interpolated; w handedness; all 0 for none
+//   texel    as stored, [0,1]
+//   scale    of the texture, on its two slopes
+PLD_FN vec3 bumpedNormal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
+  vec3 along = vec3(tangent) - normal * dot(normal, vec3(tangent));
+  float squared = dot(along, along);
+  if (!(squared > 0.0f)) return normal;
+  along = along / sqrt(squared);
+  vec3 across = cross(normal, along) * (tangent.w < 0.0f ? -1.0f : 1.0f);
+  vec3 slope = texel * 2.0f - vec3(1.0f);
+  vec3 bumped = along * (slope.x * scale) + across * (slope.y * scale) + normal * slope.z;
+  float size = dot(bumped, bumped);
+  return size > 0.0f ? bumped / sqrt(size) : normal;
+}
+
+// The same side as normalTowardsEye; a bump that turns away from the eye is turned back to the horizon.
+PLD_FN vec3 bumpedTowardsEye(vec3 interpolated, vec4 tangent, vec3 texel, float scale, bool front, vec3 toEye) {
+  vec3 outward = dot(interpolated, interpolated) > 0.0f ? normalize(interpolated) : (front ? toEye : -toEye);
+  vec3 bumped = bumpedNormal(outward, tangent, texel, scale);
+  vec3 seen = front ? bumped : -bumped;
+  float facing = dot(seen, toEye);
+  if (facing >= 0.0f) return seen;
+  vec3 level = seen - facing * toEye;
+  float size = dot(level, level);
+  return size > 0.0f ? level / sqrt(size) : toEye;
 }

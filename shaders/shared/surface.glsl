@@ -14,6 +14,7 @@ struct Surface {
   float roughness;     // perceptual, [0,1]
   float transmission;  // part of the light that enters and is not scattered back, [0,1]
   float ior;           // >= 1; 1 reflects nothing
+  vec4 specular;       // of the dielectric: tint head-on, >= 0; strength, [0,1]. KHR_materials_specular; 1 for none
 };
 
 // A unit tangent and its handedness (1 or -1) in two numbers: folded onto an octahedron, the sign of y is the hand's.
@@ -62,24 +63,43 @@ PLD_FN vec3 fresnelConductor(float cosine, vec3 baseColor) {
   return f;
 }
 
+// What the interface of a dielectric reflects, per channel, KHR_materials_specular. Its Fresnel term rises from F0 to 1
+// as Schlick's does; here it rises as the exact one of the same index.
+PLD_FN vec3 dielectricReflectance(Surface surface, float cosine) {
+  float exact = fresnelDielectric(cosine, surface.ior);
+  if (surface.specular == vec4(1.0f)) return vec3(exact);
+  precise float root = (surface.ior - 1.0f) / (surface.ior + 1.0f);
+  precise float headOn = root * root;
+  precise float rise = headOn < 1.0f ? clamp((exact - headOn) / (1.0f - headOn), 0.0f, 1.0f) : 0.0f;
+  precise vec3 tinted = min(headOn * vec3(surface.specular), vec3(1.0f));
+  precise vec3 f = surface.specular.a * (tinted + (vec3(1.0f) - tinted) * rise);
+  return f;
+}
+
+// Part of the light that does not enter a dielectric: one number, so that a tinted reflection tints nothing else.
+PLD_FN float interfaceLoss(Surface surface, float cosine) {
+  vec3 f = dielectricReflectance(surface, cosine);
+  return max(f.r, max(f.g, f.b));
+}
+
 // Part of the light reflected specularly, per channel.
 PLD_FN vec3 specularReflectance(Surface surface, float cosine) {
-  float dielectric = fresnelDielectric(cosine, surface.ior);
-  precise vec3 f = (1.0f - surface.metallic) * vec3(dielectric) +
+  vec3 dielectric = dielectricReflectance(surface, cosine);
+  precise vec3 f = (1.0f - surface.metallic) * dielectric +
                    surface.metallic * fresnelConductor(cosine, surface.baseColor);
   return f;
 }
 
 // Lambertian albedo left after metal, transmission and what the interface reflects.
 PLD_FN vec3 diffuseAlbedo(Surface surface, float cosEye) {
-  float f = fresnelDielectric(cosEye, surface.ior);
+  float f = interfaceLoss(surface, cosEye);
   precise vec3 albedo = surface.baseColor * ((1.0f - surface.metallic) * (1.0f - surface.transmission) * (1.0f - f));
   return albedo;
 }
 
 // t at the actual angle. DESIGN, Materials
 PLD_FN vec3 transmissionAt(Surface surface, float cosEye) {
-  float f = fresnelDielectric(cosEye, surface.ior);
+  float f = interfaceLoss(surface, cosEye);
   precise vec3 t = surface.baseColor * surface.attenuation * (surface.transmission * (1.0f - surface.metallic) * (1.0f - f));
   return clamp(t, vec3(0.0f), vec3(1.0f));
 }

@@ -51,7 +51,8 @@ ShadePoint pointAt(glm::vec3 position) {
   ShadePoint point;
   point.position = position;
   point.normal = point.flat = point.toEye = {0, 0, 1};
-  shading::MaterialPoint values;
+  shading::MaterialPoint values{};
+  values.specular = glm::vec4(1.0f);
   values.base = glm::vec4(kAlbedo, kAlbedo, kAlbedo, 1.0f);
   values.emission = glm::vec3(0.0f);
   values.metallic = values.transmission = 0.0f;
