@@ -50,6 +50,7 @@ void accumulate(const AccumulateFlags& flags) {
         fmt::format("{}: accumulate takes a flat picture: found deep samples, which composite takes", flags.opaque));
   PassSettings settings;
   settings.surroundings = shot->surroundings;
+  settings.environment = shot->environment;
   flags.scene.applyTo(settings);
   flags.method.applyTo(settings, shot->camera);
   flags.scatter.applyTo(settings);

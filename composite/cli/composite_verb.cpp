@@ -60,6 +60,7 @@ void composite(const CompositeFlags& flags) {
   settings.deepOpaque = shot->deepOpaque.get();
   settings.resolve.selfModulation = flags.selfModulation;
   settings.pass.surroundings = shot->surroundings;
+  settings.pass.environment = shot->environment;
   flags.scene.applyTo(settings.pass);
   flags.method.applyTo(settings.pass, shot->camera);
   flags.scatter.applyTo(settings.pass);

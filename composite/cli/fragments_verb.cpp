@@ -112,6 +112,7 @@ void fragmentsVerb(const FragmentsFlags& flags) {
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   PassSettings settings;
   settings.surroundings = shot->surroundings;
+  settings.environment = shot->environment;
   flags.scene.applyTo(settings);
 
   DeepHeader header;

@@ -43,11 +43,6 @@ Window parseSize(const std::string& text) {
   throw UsageError(fmt::format("--size: found '{}', expected WIDTHxHEIGHT, each from 1 to {}", text, kLongestEdge));
 }
 
-bool isColour(const std::string& text) {
-  return std::count(text.begin(), text.end(), ',') == 2 &&
-         text.find_first_not_of("0123456789+-.eE,") == std::string::npos;
-}
-
 // Says how far a long render is, not more often than one can read.
 class Progress {
  public:

@@ -66,6 +66,11 @@ std::size_t parseBytes(const std::string& text, const std::string& flag) {
   return value << shift;
 }
 
+bool isColour(const std::string& text) {
+  return std::count(text.begin(), text.end(), ',') == 2 &&
+         text.find_first_not_of("0123456789+-.eE,") == std::string::npos;
+}
+
 glm::vec3 parseColour(const std::string& text, const std::string& flag) {
   const auto numbers = parseNumbers(text, ',', 3, flag, "three numbers R,G,B");
   for (const double number : numbers)
@@ -106,7 +111,8 @@ ReadOptions ReadFlags::options() const {
 
 void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--camera", camera, "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
-  verb.add_option("--environment", environment, "Constant surrounding radiance R,G,B; without it the sky's median");
+  verb.add_option("--environment", environment,
+                  "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");
   verb.add_option("--set", overrides,
                   "MATERIAL.key=value: thin, collimation, coverage, additive, lowResolution, castsShadow")
       ->allow_extra_args(false);

@@ -54,6 +54,7 @@ struct RunFlags {
 };
 
 std::size_t parseBytes(const std::string& text, const std::string& flag);                // "64M", "2G", "1048576"
+bool isColour(const std::string& text);                                                  // rather than a file
 glm::vec3 parseColour(const std::string& text, const std::string& flag);                 // "R,G,B"
 std::pair<double, double> parseRange(const std::string& text, const std::string& flag);  // "NEAR:FAR"
 

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <sstream>
 
+#include "engine_bridge/embree/environment.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/part_camera.h"
 
@@ -170,7 +171,16 @@ std::unique_ptr<Shot> loadShot(const std::string& opaquePath, const std::vector<
                residual ? fmt::format(", checked against positions: median {:.2g} px", *residual) : ", not checked");
 
   if (!sceneFlags.environment.empty()) {
-    shot->surroundings = parseColour(sceneFlags.environment, "--environment");
+    if (isColour(sceneFlags.environment)) {
+      shot->surroundings = parseColour(sceneFlags.environment, "--environment");
+    } else {
+      std::vector<std::string> notes;
+      shot->environment = stages.time("prepare environment", [&] {
+        const Environment picture = readEnvironment(sceneFlags.environment, notes);
+        return std::make_shared<const Surroundings>(prepareSurroundings(picture.map()));
+      });
+      say(notes);
+    }
   } else {
     const bool lit = std::any_of(shot->scene.materials.begin(), shot->scene.materials.end(),
                                  [](const Material& material) { return material.transparent() && !material.unlit; });

@@ -9,6 +9,7 @@
 #include "composite/deep/deep_opaque.h"
 #include "composite/deep/deep_source.h"
 #include "composite/veil.h"
+#include "engine_bridge/scene/surroundings.h"
 
 namespace pellucid::cli {
 
@@ -17,6 +18,7 @@ struct Shot {
   Scene scene;
   Camera camera;
   glm::vec3 surroundings{0.0f};
+  std::shared_ptr<const Surroundings> environment;  // a picture of them, where a file was given
   std::unique_ptr<DeepOpaque> deepOpaque;  // when the opaque picture is deep; `opaque` is then what it flattens to
   bool hasScene = true;                    // false when all transparent inputs are deep files
   std::vector<std::unique_ptr<DeepSource>> deep;  // transparent layers that come as deep EXR

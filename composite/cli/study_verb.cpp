@@ -157,6 +157,7 @@ void study(const StudyFlags& flags) {
   RenderSettings settings;
   settings.deepOpaque = shot->deepOpaque.get();
   settings.pass.surroundings = shot->surroundings;
+  settings.pass.environment = shot->environment;
   flags.scene.applyTo(settings.pass);
   flags.method.applyTo(settings.pass, shot->camera);
   flags.scatter.applyTo(settings.pass);

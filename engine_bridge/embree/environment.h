@@ -17,6 +17,7 @@ class Environment {
 
   bool black() const { return map_.empty() && constant_ == glm::vec3(0.0f); }
   bool constant() const { return map_.empty(); }
+  const Image<glm::vec3>& map() const { return map_; }  // empty for a constant
 
   // Radiance from a direction (world, unit), bilinear between texels.
   glm::vec3 radiance(glm::vec3 towards) const;

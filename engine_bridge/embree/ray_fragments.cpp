@@ -37,6 +37,7 @@ struct RayFragments::Impl {
   CameraRays rays;
   TransparentScene traced;
   std::vector<PunctualLight> lights;
+  glm::mat3 worldFromView;
 
   Impl(const Scene& sceneGiven, const GBuffer& gbufferGiven, const Camera& cameraGiven)
       : scene(sceneGiven),
@@ -44,7 +45,8 @@ struct RayFragments::Impl {
         camera(cameraGiven),
         rays(camera, gbuffer.display),
         traced(scene, camera),
-        lights(lightBlocks(scene.lights, camera)) {}
+        lights(lightBlocks(scene.lights, camera)),
+        worldFromView(glm::transpose(glm::dmat3(camera.viewFromWorld))) {}
 
   Ray rayOf(int x, int y, const PassSettings& settings) const {
     return rays.through({x + settings.sample.x, y + settings.sample.y});
@@ -98,7 +100,10 @@ std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, cons
     const glm::vec3 toEye = rays.orthographic() ? glm::vec3(0, 0, 1) : glm::normalize(-position);
     const glm::vec3 normal = sampler.normalAt(primitive.material, attributes, crossing.hit.front, toEye);
     cosEye = std::clamp(glm::dot(normal, toEye), shading::PLD_GRAZING, 1.0f);
-    reflected = shading::reflectSurroundings(surface, cosEye) * settings.surroundings;
+    if (settings.environment)
+      reflected = settings.environment->reflected(surface, worldFromView * normal, worldFromView * toEye, cosEye);
+    else
+      reflected = shading::reflectSurroundings(surface, cosEye) * settings.surroundings;
     for (const PunctualLight& light : lights) {
       const shading::Arriving arriving = shading::arrivingAt(light, position);
       reflected += shading::reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;

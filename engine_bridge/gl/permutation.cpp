@@ -13,6 +13,7 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("UNLIT", material.unlit);
   define("LIGHTS", lit && frame.lights);
   define("SURROUNDINGS", lit && frame.surroundings);
+  define("ENVIRONMENT", lit && frame.environment);
   define("VERTEX_COLOUR", vertexColours);
   define("BLEND", material.alphaMode == AlphaMode::blend);
   define("MASK_SMOOTH", material.alphaMode == AlphaMode::mask && frame.mask == MaskEdge::smooth);

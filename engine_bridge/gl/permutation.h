@@ -17,6 +17,7 @@ enum class Output {
 struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;
   bool lights = false, surroundings = false;
+  bool environment = false;                 // the surroundings are a picture
   bool solids = false;                      // there is a solid plane to test against
   bool refracts = false, diffuses = false;  // some material of the scene does, and the settings let it
   bool prune = true;                        // else every material gets the text of every phenomenon

@@ -11,6 +11,7 @@ namespace pellucid::gl {
 namespace {
 
 constexpr const char* kVertexStage = "gl/transparent.vert";
+constexpr GLuint kAtlasUnit = 11;  // shaders/gl/environment.glsl
 constexpr const char* kFragmentStage = "gl/transparent.frag";
 
 template <class T>
@@ -101,7 +102,8 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.prune = settings.scatter.prune;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
-  features_.surroundings = settings.surroundings != glm::vec3(0.0f);
+  features_.environment = settings.environment != nullptr;
+  features_.surroundings = !features_.environment && settings.surroundings != glm::vec3(0.0f);
   features_.solids = anySolid_ || all;
   features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (anyRefracts_ || all);
   features_.diffuses = settings.scatter.k0 > 0.0f && (anyDiffuses_ || all);
@@ -146,6 +148,9 @@ void Renderer::begin(const Window& superTile, const PassSettings& settings, std:
                        static_cast<float>(camera_.focal.y * halfHeight)};
   frame_.diffusion = {settings.scatter.k0, settings.scatter.k1, settings.scatter.netCoverage ? 1.0f : 0.0f, 0.0f};
   frame_.viewport = glm::vec2(superTile.width(), superTile.height());
+  frame_.worldFromView = glm::mat4(glm::mat3(glm::transpose(glm::dmat3(camera_.viewFromWorld))));
+  frame_.atlasEdge = settings.environment ? settings.environment->edge : 0;
+  uploadSurroundings();
   uploadFrame();
 
   glViewport(0, 0, superTile.width(), superTile.height());
@@ -162,6 +167,24 @@ void Renderer::begin(const Window& superTile, const PassSettings& settings, std:
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lightBuffer_.name());
   checkGl("beginning the transparent pass");
   drawSolids();
+}
+
+void Renderer::uploadSurroundings() {
+  if (!settings_.environment) return;
+  if (atlasOf_ != settings_.environment) {
+    const Image<glm::vec4>& atlas = settings_.environment->atlas;
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    if (std::max(atlas.width(), atlas.height()) > largest)
+      throw ResourceError("environment: its maps are larger than the GL device holds along an edge");
+    atlas_ = Texture::make();
+    glTextureStorage2D(atlas_.name(), 1, GL_RGBA32F, atlas.width(), atlas.height());
+    glTextureSubImage2D(atlas_.name(), 0, 0, 0, atlas.width(), atlas.height(), GL_RGBA, GL_FLOAT, atlas.data());
+    checkGl("uploading the environment");
+    atlasOf_ = settings_.environment;
+  }
+  glBindTextureUnit(kAtlasUnit, atlas_.name());
+  glBindSampler(kAtlasUnit, 0);
 }
 
 void Renderer::uploadFrame() {

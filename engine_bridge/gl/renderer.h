@@ -51,6 +51,7 @@ class Renderer {
   void classify();
   const Program& programFor(int primitive, Output output);
   void uploadFrame();
+  void uploadSurroundings();
   void drawSolids();
   void drawChunk(const std::vector<ChunkDraw>& draws, Output output);
 
@@ -74,7 +75,8 @@ class Renderer {
   FrameFeatures features_;
   FrameBlock frame_;
   std::optional<Targets> targets_;
-  Texture opaqueZ_;
+  Texture opaqueZ_, atlas_;
+  std::shared_ptr<const Surroundings> atlasOf_;  // what atlas_ holds
   Window opaqueZPart_;
 };
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine_bridge/scene/scene.h"
+#include "engine_bridge/scene/surroundings.h"
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
@@ -40,6 +41,7 @@ struct PassSettings {
   std::size_t budgetBytes = std::size_t{256} << 20;  // geometry, and for lists fragments, resident at once
   int tile = 0;                                      // scissor tiles of this edge in pixels; 0 picks one
   glm::vec3 surroundings{0.0f};                      // constant environment radiance, scene-linear
+  std::shared_ptr<const Surroundings> environment;   // a picture of them, which wins over the constant
   ScatterSettings scatter;
 };
 

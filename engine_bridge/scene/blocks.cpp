@@ -12,6 +12,12 @@ void putTransform(MaterialBlock& block, std::size_t slot, const TextureRef& refe
   block.uvTransforms[2 * slot + 1] = {m[0][1], m[1][1], m[2][1], 0.0f};
 }
 
+// Facets of an index of 1 bend nothing, however rough; from 1.5 on roughness counts in full, as in Khronos' viewer, which
+// glTF's authors look at.
+float roughnessThrough(float ior) {
+  return std::clamp(2.0f * ior - 2.0f, 0.0f, 1.0f);
+}
+
 }  // namespace
 
 bool hasVolume(const Material& material) {
@@ -27,7 +33,7 @@ bool refracts(const Material& material) {
 bool diffuses(const Material& material) {
   if (material.collimation) return *material.collimation < 1.0f;
   return !material.unlit && material.transmission > 0.0f &&
-         (material.roughness > 0.0f || material.diffuseTransmission > 0.0f);
+         (material.roughness * roughnessThrough(material.ior) > 0.0f || material.diffuseTransmission > 0.0f);
 }
 
 MaterialBlock materialBlock(const Material& material) {
@@ -37,7 +43,8 @@ MaterialBlock materialBlock(const Material& material) {
   block.interface_ = {material.roughness, material.transmission, material.ior, material.alphaCutoff};
   block.volume = glm::vec4(material.attenuationColor,
                            hasVolume(material) ? material.thickness / material.attenuationDistance : 0.0f);
-  block.covering = {material.coverage.value_or(1.0f), material.additive ? 1.0f : 0.0f, material.normalScale, 0.0f};
+  block.covering = {material.coverage.value_or(1.0f), material.additive ? 1.0f : 0.0f, material.normalScale,
+                    roughnessThrough(material.ior)};
   block.specular = glm::vec4(material.specularColor, material.specular);
   // One that states no collimation and does not diffuse is clear.
   block.scattering = {material.collimation ? *material.collimation

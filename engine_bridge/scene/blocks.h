@@ -15,7 +15,7 @@ struct MaterialBlock {
   glm::vec4 emission;    // a: metallic
   glm::vec4 interface_;  // roughness, transmission, ior, alpha cutoff
   glm::vec4 volume;      // attenuation colour; thickness over attenuation distance
-  glm::vec4 covering;    // factor on coverage; 1 for additive; scale of normals
+  glm::vec4 covering;    // factor on coverage; 1 for additive; scale of normals; roughness that passes through
   glm::vec4 specular;    // tint head-on, strength
   glm::vec4 uvTransforms[12];
   glm::vec4 scattering;  // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space

@@ -50,6 +50,7 @@ struct MaterialReader {
       material.baseColorTexture = texture(*pbr, "baseColorTexture", TexelUse::colour);
       material.metallicRoughnessTexture = texture(*pbr, "metallicRoughnessTexture", TexelUse::data);
     }
+    if (source.find("occlusionTexture")) note("its occlusion texture is not used");
     material.emission = source.colour("emissiveFactor", glm::vec3(0.0f), 0.0f, 1.0f, notes);
     material.emissiveTexture = texture(source, "emissiveTexture", TexelUse::colour);
     if (const std::optional<JsonView> normals = source.find("normalTexture")) {

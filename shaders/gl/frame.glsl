@@ -13,6 +13,8 @@ layout(std140, binding = 0) uniform Frame {
   vec2 viewport;         // pixels
   vec4 refraction;       // PLD_REFRACT_*; metres (fixed); focal length in x and y, pixels
   vec4 diffusion;        // k0, k1 metres; 1 for net coverage
+  mat4 worldFromView;    // turns only
+  int atlasEdge;         // of the surroundings' level 0, texels
 };
 
 // Row 0 is the top row: the pass sets the clip origin to the upper left.

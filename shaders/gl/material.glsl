@@ -8,7 +8,8 @@ layout(std140, binding = 1) uniform MaterialValues {
   vec4 emission;            // rgb radiance; a metallic
   vec4 interface_;          // roughness, transmission, ior, alpha cutoff
   vec4 volume;              // rgb attenuation colour; a thickness over attenuation distance, object space
-  vec4 covering;            // r factor on coverage, g 1 for a material that only adds light, b scale of normals
+  vec4 covering;            // r factor on coverage, g 1 for a material that only adds light, b scale of normals,
+                            // a part of the roughness that light passing through meets
   vec4 specular;            // tint head-on, strength
   vec4 uvTransforms[12];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
   vec4 scattering;          // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space

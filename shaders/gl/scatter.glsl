@@ -46,7 +46,7 @@ Scatter scatterHere(Layer layer, Surface surface, ivec2 pixel) {
   settings.orthographic = orthographic;
   float collimation = material.scattering.x >= 0.0f
                           ? material.scattering.x
-                          : collimationOf(surface.roughness, material.scattering.y);
+                          : collimationOf(surface.roughness * material.covering.a, material.scattering.y);
   scatter.variance = layerVariance(settings, layer.coverage, layer.transmission, collimation, layer.z,
                                    backdropZ(pixel));
 #endif

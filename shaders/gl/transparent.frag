@@ -4,6 +4,9 @@
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
 #include "gl/exact_cut.glsl"
+#ifdef ENVIRONMENT
+#include "gl/environment.glsl"
+#endif
 #include "gl/scatter.glsl"
 #if defined(OUTPUT_SUMS)
 #include "gl/sums_output.glsl"
@@ -34,6 +37,9 @@ void main() {
   cosEye = clamp(dot(normal, toEye), PLD_GRAZING, 1.0f);
 #ifdef SURROUNDINGS
   reflected = reflectSurroundings(surface, cosEye) * surroundings.rgb;
+#endif
+#ifdef ENVIRONMENT
+  reflected += environmentReflected(surface, normal, toEye, cosEye);
 #endif
 #ifdef LIGHTS
   for (int i = 0; i < lightCount; ++i) {

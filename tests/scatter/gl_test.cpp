@@ -68,7 +68,7 @@ TEST(ScatterGl, ReplayedFragmentsGiveTheBitsOfTheFold) {
 TEST(ScatterGl, FrostedPaneHasTheSpreadOfTheEquation) {
   Stage stage(64, 64);
   stage.gbuffer.viewZ = Image<float>(64, 64, 9.0f);
-  Material material = glassOf(1.0f, 0.6f, false);
+  Material material = glassOf(1.5f, 0.6f, false);
   stage.quad(0, 0, 64, 64, 4.0, stage.add(material));
   const OitPlanes planes = stage.accumulate();
   ASSERT_TRUE(planes.scatters());
@@ -80,10 +80,20 @@ TEST(ScatterGl, FrostedPaneHasTheSpreadOfTheEquation) {
   EXPECT_EQ(planes.refraction.at(20, 30).z, 0.0f);
 }
 
-TEST(ScatterGl, SolidBehindThePaneIsTheBackgroundThatItSpreads) {
+TEST(ScatterGl, RoughFacetsOfIndexOneSpreadNothing) {
   Stage stage(32, 32);
   stage.gbuffer.viewZ = Image<float>(32, 32, 9.0f);
   stage.quad(0, 0, 32, 32, 4.0, stage.add(glassOf(1.0f, 0.6f, false)));
+  EXPECT_FALSE(stage.accumulate().scatters());
+  stage.scene.materials[0].ior = 1.25f;  // half of the roughness
+  const double s = 32.0 * 0.3 * 0.09 * (1 - 1 / (1 + 5.0 / 0.5)) / 4.0;
+  EXPECT_NEAR(static_cast<double>(stage.accumulate().refraction.at(9, 9).w), s * s, 1e-3 * s * s);
+}
+
+TEST(ScatterGl, SolidBehindThePaneIsTheBackgroundThatItSpreads) {
+  Stage stage(32, 32);
+  stage.gbuffer.viewZ = Image<float>(32, 32, 9.0f);
+  stage.quad(0, 0, 32, 32, 4.0, stage.add(glassOf(1.5f, 0.6f, false)));
   stage.quad(0, 0, 32, 32, 4.5, stage.add(unlitBlend(glm::vec3(1), 1.0f)));
   const OitPlanes planes = stage.accumulate();
   const double s = 32.0 * 0.3 * 0.36 * (1 - 1 / (1 + 0.5 / 0.5)) / 4.0;
