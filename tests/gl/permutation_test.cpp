@@ -65,6 +65,25 @@ TEST(Permutations, EverySurfaceCompilesAndLinks) {
               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
+// Beside the others, which they do not touch.
+TEST(Permutations, NormalTexturesAndEnvironmentsCompileAndLink) {
+  GlContext context;
+  for (int bits = 0; bits < 1 << 5; ++bits) {
+    auto bit = [bits](int i) { return (bits >> i & 1) != 0; };
+    Material material;
+    material.transmission = 1.0f;
+    material.alphaMode = bit(0) ? AlphaMode::blend : AlphaMode::mask;
+    if (bit(1)) material.normalTexture.texture = 0;
+    gl::FrameFeatures frame;
+    frame.environment = bit(2);
+    frame.lights = bit(3);
+    frame.refracts = frame.diffuses = bit(4);
+    frame.prune = false;
+    build(gl::outputDefines(bit(3) ? gl::Output::list : gl::Output::sums, frame, shading::PLD_WEIGHT_EQ5, 0),
+          gl::surfaceDefines(material, bit(0), frame));
+  }
+}
+
 TEST(Permutations, EveryOutputCompilesAndLinks) {
   GlContext context;
   const Material plain = unlitBlend({1, 1, 1}, 0.5f);
