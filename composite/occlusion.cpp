@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "composite/denormals.h"
@@ -56,24 +57,17 @@ bool isDepth(float z) {
 
 }  // namespace
 
-Image<float> nearestSolid(const GBuffer& gbuffer, const FoliagePlanes& layer, std::size_t& lacking,
-                          Image<std::uint8_t>* mask) {
-  Image<float> nearest = gbuffer.viewZ;
-  lacking = 0;
-  if (mask) *mask = Image<std::uint8_t>(nearest.width(), nearest.height());
-  const Rims rims(layer, gbuffer.data);
+Image<float> solidDepth(const FoliagePlanes& layer, const Window& window) {
+  Image<float> solidZ(window.width(), window.height(), std::numeric_limits<float>::infinity());
+  const Rims rims(layer, window);
   for (int y = 0; y < layer.coverage.height(); ++y)
     for (int x = 0; x < layer.coverage.width(); ++x) {
       const glm::ivec2 at = rims.place(x, y);
-      if (at.x < 0 || at.y < 0 || at.x >= nearest.width() || at.y >= nearest.height()) continue;
+      if (at.x < 0 || at.y < 0 || at.x >= solidZ.width() || at.y >= solidZ.height()) continue;
       const float z = layer.viewZ.at(x, y);
-      float& opaque = nearest.at(at.x, at.y);
-      if (rims.coverage(x, y) < 1.0f || !isDepth(z) || !shading::standsBefore(z, opaque)) continue;
-      opaque = z;
-      ++lacking;
-      if (mask) mask->at(at.x, at.y) = 1;
+      if (rims.coverage(x, y) >= 1.0f && isDepth(z)) solidZ.at(at.x, at.y) = z;
     }
-  return nearest;
+  return solidZ;
 }
 
 Image<std::uint8_t> occludersWanted(const FoliagePlanes& layer, const Window& occluders, int form) {

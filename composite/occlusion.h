@@ -3,18 +3,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "gbuffer/gbuffer.h"
-#include "gbuffer/image.h"
+#include "gbuffer/occluders.h"
 #include "shaders/shading.h"
 
 namespace pellucid {
-
-// What rims are inferred from: planes of one window.
-struct OccluderPlanes {
-  Window data;
-  Image<float> viewZ;      // planar metres, > 0, +inf for nothing
-  Image<float> occlusion;  // [0,1], 1 = open
-};
 
 // A rendered foliage layer: planes of its own window, which may differ from the occluders'.
 struct FoliagePlanes {
@@ -23,10 +15,8 @@ struct FoliagePlanes {
   Image<float> viewZ;     // planar metres, > 0, +inf for nothing
 };
 
-// The G-buffer's depth, and in front of it what the layer covers wholly. `lacking` counts the pixels where the layer
-// stands before the G-buffer by more than a hundredth of its depth, and marks them in the mask when there is one.
-Image<float> nearestSolid(const GBuffer& gbuffer, const FoliagePlanes& layer, std::size_t& lacking,
-                          Image<std::uint8_t>* mask = nullptr);
+// Depth of what the layer covers wholly, in the given window: planar metres, +inf elsewhere.
+Image<float> solidDepth(const FoliagePlanes& layer, const Window& window);
 
 // Pixels of the occluders that some rim of the layer looks at.
 Image<std::uint8_t> occludersWanted(const FoliagePlanes& layer, const Window& occluders, int form);

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/foliage_flags.h"
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
@@ -22,6 +23,7 @@ struct AccumulateFlags {
   SceneFlags scene;
   MethodFlags method;
   ScatterFlags scatter;
+  FoliageFlags foliage;
   RunFlags run;
 };
 
@@ -56,6 +58,7 @@ void accumulate(const AccumulateFlags& flags) {
   flags.scatter.applyTo(settings);
   GlContext context(flags.scene.device);
   TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
+  flags.foliage.applyTo(settings, &pass, shot->opaque.gbuffer, shot->camera, stages);
   const OitPlanes planes = stages.time("transparent pass", [&] {
     return flags.method.isExact() ? exactPlanes(pass, settings, *shot) : pass.accumulate(settings);
   });
@@ -85,6 +88,7 @@ void addAccumulate(CLI::App& app) {
   flags->scene.addTo(*verb);
   flags->method.addTo(*verb, false);
   flags->scatter.addTo(*verb);
+  flags->foliage.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { accumulate(*flags); });
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/foliage_flags.h"
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
@@ -29,6 +30,7 @@ struct CompositeFlags {
   MethodFlags method;
   ScatterFlags scatter;
   LookupFlags lookup;
+  FoliageFlags foliage;
   RunFlags run;
   int samples = kDefaultSamples;
   std::optional<double> tolerance;
@@ -79,6 +81,7 @@ void composite(const CompositeFlags& flags) {
     settings.systems = &systems;
     for (const SystemPass& system : systems) spdlog::info("system {}: at {:.4g} m", system.name, system.z);
   }
+  flags.foliage.applyTo(settings.pass, pass.get(), gbuffer, shot->camera, stages);
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
   RenderCounts counts;
   const Veil veil = renderVeil(pass.get(), shot->deep, settings, gbuffer, stages, counts);
@@ -148,6 +151,7 @@ void addComposite(CLI::App& app) {
   flags->method.addTo(*verb, true);
   flags->scatter.addTo(*verb);
   flags->lookup.addTo(*verb);
+  flags->foliage.addTo(*verb);
   flags->run.addTo(*verb);
   verb->add_option("--aa", flags->samples, "Jittered passes, averaged; 1 samples pixel centres")
       ->check(CLI::Range(1, 4096))

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/foliage_flags.h"
 #include "composite/cli/lists.h"
 #include "composite/cli/results.h"
 #include "composite/cli/shot.h"
@@ -19,6 +20,7 @@ struct FragmentsFlags {
   std::vector<std::string> scenes;
   ReadFlags read;
   SceneFlags scene;
+  FoliageFlags foliage;
   RunFlags run;
 };
 
@@ -128,6 +130,7 @@ void fragmentsVerb(const FragmentsFlags& flags) {
     context = std::make_unique<GlContext>(flags.scene.device);
     pass = std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera);
   }
+  flags.foliage.applyTo(settings, pass.get(), gbuffer, shot->camera, stages);
   RenderCounts counts;
   stages.time("lists and write", [&] {
     DeepWriter writer(flags.output, header);
@@ -153,6 +156,7 @@ void addFragments(CLI::App& app) {
   verb->add_option("-o,--output", flags->output, "Deep EXR to write")->required();
   flags->read.addTo(*verb);
   flags->scene.addTo(*verb);
+  flags->foliage.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { fragmentsVerb(*flags); });
 }

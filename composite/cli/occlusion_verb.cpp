@@ -5,8 +5,8 @@
 #include "composite/cli/results.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
+#include "composite/occluders.h"
 #include "composite/occlusion.h"
-#include "composite/screen_occlusion.h"
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
 
@@ -96,45 +96,28 @@ OpaqueFile readLayer(const OcclusionFlags& flags) {
 }
 
 // Depth and occlusion beside the rims: the file's own, and from depth where it has none.
-OccluderPlanes occludersOf(const OcclusionFlags& flags, OpaqueFile& opaque, const FoliagePlanes& layer, int form) {
-  GBuffer& gbuffer = opaque.gbuffer;
-  OccluderPlanes occluders;
-  occluders.data = gbuffer.data;
-  std::size_t lacking = 0;
-  Image<std::uint8_t> lacked;
-  occluders.viewZ = nearestSolid(gbuffer, layer, lacking, &lacked);
-  const bool fromFile = flags.source != "screen" && !gbuffer.occlusion.empty();
-  if (flags.source == "file" && !fromFile)
+OccluderPlanes occludersBeside(const OcclusionFlags& flags, const GBuffer& gbuffer, const FoliagePlanes& layer,
+                               int form) {
+  NearestSolids solids = nearestSolids(gbuffer, solidDepth(layer, gbuffer.data));
+  OccluderSettings settings;
+  settings.fromFile = flags.source != "screen";
+  settings.screen.radius = flags.radius;
+  const bool hasFile = !gbuffer.occlusion.empty();
+  if (flags.source == "file" && !hasFile)
     throw MeaningError(fmt::format("{}: no AO: found none, expected a channel AO, or --source screen", flags.opaque));
-  if (fromFile) occluders.occlusion = gbuffer.occlusion;
-  if (fromFile && lacking == 0) return occluders;
-
-  Image<std::uint8_t> wanted = occludersWanted(layer, gbuffer.data, form);
-  std::size_t pixels = 0;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (fromFile && !lacked[i]) wanted[i] = 0;
-    pixels += wanted[i];
-  }
-  if (fromFile && flags.source == "file")
+  if (flags.source == "file" && solids.lacked > 0)
     throw MeaningError(
         fmt::format("{}: AO: found none for {} pixels of leaves that only {} holds, expected --source auto",
-                    flags.opaque, lacking, flags.layer));
-  if (pixels == 0) {
-    if (!fromFile) occluders.occlusion = Image<float>(wanted.width(), wanted.height(), 1.0f);
-    return occluders;
-  }
-  const Camera camera = chooseCamera(flags.camera, gbuffer, Scene{}, flags.opaque);
-  ScreenOcclusionSettings settings;
-  settings.radius = flags.radius;
-  const Image<float> screen =
-      screenOcclusion(occluders.viewZ, camera, gbuffer.display, gbuffer.data, settings, &wanted);
-  if (!fromFile)
-    occluders.occlusion = screen;
-  else
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      if (lacked[i]) occluders.occlusion[i] = screen[i];
-  spdlog::info("{}: occlusion of {} pixels from depth alone{}", flags.opaque, pixels,
-               fromFile ? ", where leaves stand that it lacks" : "");
+                    flags.opaque, solids.lacked, flags.layer));
+  const Image<std::uint8_t> wanted = occludersWanted(layer, gbuffer.data, form);
+  bool computes = !settings.fromFile || !hasFile;
+  for (std::size_t i = 0; i < wanted.size() && !computes; ++i) computes = wanted[i] && solids.lacking[i];
+  const Camera camera = computes ? chooseCamera(flags.camera, gbuffer, Scene{}, flags.opaque) : Camera{};
+  std::size_t pixels = 0;
+  OccluderPlanes occluders = occludersOf(gbuffer, camera, std::move(solids), settings, &wanted, pixels);
+  if (pixels > 0)
+    spdlog::info("{}: occlusion of {} pixels from depth alone{}", flags.opaque, pixels,
+                 settings.fromFile && hasFile ? ", where leaves stand that it lacks" : "");
   return occluders;
 }
 
@@ -167,7 +150,7 @@ void occlusionVerb(const OcclusionFlags& flags) {
   for (std::size_t i = 0; i < foliage.coverage.size(); ++i) foliage.coverage[i] = layer.gbuffer.beauty[i].a;
 
   const int form = flags.inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE;
-  const OccluderPlanes occluders = stages.time("occluders", [&] { return occludersOf(flags, opaque, foliage, form); });
+  const OccluderPlanes occluders = stages.time("occluders", [&] { return occludersBeside(flags, opaque.gbuffer, foliage, form); });
   const InferredOcclusion inferred = stages.time("infer", [&] { return inferOcclusion(foliage, occluders, form); });
   if (inferred.withoutDepth > 0)
     spdlog::info("{}: {} of {} rim pixels have no depth and stay open", flags.layer, inferred.withoutDepth,

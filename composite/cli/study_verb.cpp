@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/foliage_flags.h"
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
@@ -30,6 +31,7 @@ struct StudyFlags {
   MethodFlags method;
   ScatterFlags scatter;
   LookupFlags lookup;
+  FoliageFlags foliage;
   RunFlags run;
   std::vector<int> samples{1};
   std::vector<std::string> precisions{"float"};
@@ -168,6 +170,7 @@ void study(const StudyFlags& flags) {
     context = std::make_unique<GlContext>(flags.scene.device);
     pass = std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera);
   }
+  flags.foliage.applyTo(settings.pass, pass.get(), gbuffer, shot->camera, stages);
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
   const auto settingsFor = [&](const Candidate& candidate) {
     RenderSettings how = settings;
@@ -253,6 +256,7 @@ void addStudy(CLI::App& app) {
   flags->lookup.addTo(*verb);
   flags->read.addTo(*verb);
   flags->scene.addTo(*verb);
+  flags->foliage.addTo(*verb);
   flags->method.addWeightTo(*verb, true);
   verb->add_option("--threads", flags->run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
   verb->add_flag("--json", flags->run.json, "Print the table as JSON");

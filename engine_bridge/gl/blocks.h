@@ -16,7 +16,7 @@ struct FrameBlock {
   std::int32_t lightCount = 0, orthographic = 0;
   glm::vec2 viewport{0.0f};       // pixels
   glm::vec4 refraction{0.0f};     // PLD_REFRACT_*; metres (fixed); focal length in x and y, pixels
-  glm::vec4 diffusion{0.0f};      // k0, k1 metres; 1 for net coverage
+  glm::vec4 diffusion{0.0f};      // k0, k1 metres; 1 for net coverage; how much occlusion darkens direct light
   glm::mat4 worldFromView{1.0f};  // turns only
   std::int32_t atlasEdge = 0, atlasUnused[3] = {};
 };

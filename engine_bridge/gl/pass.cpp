@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "engine_bridge/gl/fragment_lists.h"
 #include "engine_bridge/gl/renderer.h"
@@ -39,6 +40,8 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, bool l
   plane(light, 128, "additive light", "no material adds light or transmits");
   plane(renderer.hasSolids(), 128 + 32, "solid pass", "no fragment can hide everything");
   if (renderer.hasSolids()) statistics.passes += 2;
+  plane(renderer.occludes(), 64, "inferred occlusion",
+        settings.occlusion.occluders ? "no cut-out material, or no surroundings" : "switched off");
   plane(renderer.scatters(), 128 + 32, "scattering planes", "nothing refracts or diffuses");
   plane(
       renderer.refracts(), 0, "refraction",
@@ -56,6 +59,20 @@ TransparentPass::~TransparentPass() = default;
 
 bool TransparentPass::scatters(const PassSettings& settings) const {
   return impl_->renderer.wouldScatter(settings);
+}
+
+bool TransparentPass::wantsOccluders(const PassSettings& settings) const {
+  return impl_->renderer.wouldOcclude(settings);
+}
+
+Image<float> TransparentPass::solidDepth(const PassSettings& settings) {
+  PassSettings centre = settings;
+  centre.sample = {0.5, 0.5};
+  const Window& data = impl_->gbuffer.data;
+  Image<float> z(data.width(), data.height(), std::numeric_limits<float>::infinity());
+  for (const Window& part : impl_->renderer.superTiles())
+    impl_->renderer.solidDepth(part, centre, settings.budgetBytes, z);
+  return z;
 }
 
 const PassStatistics& TransparentPass::statistics() const {

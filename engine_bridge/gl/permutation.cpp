@@ -4,7 +4,8 @@
 
 namespace pellucid::gl {
 
-std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame) {
+std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame,
+                                        bool infers) {
   std::vector<std::string> defines;
   auto define = [&defines](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
@@ -30,6 +31,9 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("REFRACTS", bends);
   define("REFRACTION_TEXTURE", bends && material.thicknessTexture.texture >= 0);
   define("DIFFUSES", frame.diffuses && (diffuses(material) || !frame.prune));
+  const bool occluded = frame.occludes && infers;
+  define("OCCLUDED", occluded);
+  if (occluded && frame.rimForm >= 0) defines.push_back("RIM_FORM " + std::to_string(frame.rimForm));
   return defines;
 }
 

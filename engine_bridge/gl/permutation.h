@@ -20,13 +20,17 @@ struct FrameFeatures {
   bool environment = false;                 // the surroundings are a picture
   bool solids = false;                      // there is a solid plane to test against
   bool refracts = false, diffuses = false;  // some material of the scene does, and the settings let it
+  bool occludes = false;                    // there are occluders for cut-out materials
+  int rimForm = -1;                         // PLD_OCCLUSION_* of their rims; < 0 leaves rims open
   bool prune = true;                        // else every material gets the text of every phenomenon
 
   bool scatters() const { return refracts || diffuses; }
 };
 
 // Defines for shaders/gl/transparent.frag.
-std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame);
+//   infers  the material's rims take their occlusion from their neighbours (infersOcclusion)
+std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame,
+                                        bool infers = false);
 std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, int weight, int normalisation);
 
 }  // namespace pellucid::gl

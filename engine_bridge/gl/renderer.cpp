@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "engine_bridge/gl/solidity.h"
+#include "engine_bridge/scene/foliage.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::gl {
@@ -67,6 +68,9 @@ void Renderer::classify() {
     float& scale = largestScale[static_cast<std::size_t>(scene_.instances[i].primitive)];
     scale = std::max(scale, placed_[i].thicknessScale);
   }
+  std::vector<bool> infers;
+  for (const Material& material : scene_.materials)
+    infers.push_back(material.transparent() && infersOcclusion(material, scene_));
   for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
     const Primitive& primitive = scene_.primitives[i];
     const Material& material = scene_.materials.at(static_cast<std::size_t>(primitive.material));
@@ -83,6 +87,8 @@ void Renderer::classify() {
       canAdd_ = canAdd_ || canBeAdditive(material);
       anyRefracts_ = anyRefracts_ || pellucid::refracts(material);
       anyDiffuses_ = anyDiffuses_ || pellucid::diffuses(material);
+      shader.infers = infers[static_cast<std::size_t>(primitive.material)];
+      anyInfers_ = anyInfers_ || shader.infers;
     }
     shaders_.push_back(std::move(shader));
   }
@@ -107,6 +113,13 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.solids = anySolid_ || all;
   features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (anyRefracts_ || all);
   features_.diffuses = settings.scatter.k0 > 0.0f && (anyDiffuses_ || all);
+  features_.occludes = settings.occlusion.occluders && wouldOcclude(settings);
+  features_.rimForm = settings.occlusion.rims ? settings.occlusion.form : -1;
+}
+
+bool Renderer::wouldOcclude(const PassSettings& settings) const {
+  return anyInfers_ && (settings.environment || settings.surroundings != glm::vec3(0.0f) ||
+                        settings.occlusion.directShare > 0.0f);
 }
 
 bool Renderer::wouldScatter(const PassSettings& settings) const {
@@ -115,12 +128,39 @@ bool Renderer::wouldScatter(const PassSettings& settings) const {
 }
 
 void Renderer::begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
+  prepare(superTile, settings, geometryBytes);
+  drawSolids();
+}
+
+void Renderer::solidDepth(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes,
+                          Image<float>& z) {
+  prepare(superTile, settings, geometryBytes);
+  if (!features_.solids) return;
+  targets_->beginSolidDepth();
+  draw(Output::solid, tiles());
+  glDisable(GL_DEPTH_TEST);
+  targets_->readSolidDepth(z, superTile.x0, superTile.y0);
+}
+
+void Renderer::uploadOccluders(const Window& superTile) {
+  const std::shared_ptr<const OccluderPlanes>& planes = settings_.occlusion.occluders;
+  if (uploadedOccluders_ != planes || !(occludersPart_ == superTile)) {
+    if (planes->data != gbuffer_.data) throw std::logic_error("occluders of another window than the G-buffer's");
+    occluders_ = uploadPlanes(planes->viewZ, planes->occlusion, superTile);
+    occludersPart_ = superTile;
+    uploadedOccluders_ = planes;
+  }
+  glBindTextureUnit(7, occluders_.name());
+  glBindSampler(7, 0);
+}
+
+void Renderer::prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
   settings_ = settings;
   geometryBytes_ = geometryBytes;
   chooseFeatures(settings);
   for (std::size_t i = 0; i < shaders_.size(); ++i) {
     shaders_[i].surface = surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
-                                         shaders_[i].vertexColours, features_);
+                                         shaders_[i].vertexColours, features_, shaders_[i].infers);
     std::fill(std::begin(shaders_[i].programs), std::end(shaders_[i].programs), nullptr);
   }
 
@@ -146,7 +186,8 @@ void Renderer::begin(const Window& superTile, const PassSettings& settings, std:
   frame_.refraction = {static_cast<float>(settings.scatter.refract), settings.scatter.refractDistance,
                        static_cast<float>(camera_.focal.x * halfWidth),
                        static_cast<float>(camera_.focal.y * halfHeight)};
-  frame_.diffusion = {settings.scatter.k0, settings.scatter.k1, settings.scatter.netCoverage ? 1.0f : 0.0f, 0.0f};
+  frame_.diffusion = {settings.scatter.k0, settings.scatter.k1, settings.scatter.netCoverage ? 1.0f : 0.0f,
+                      settings.occlusion.directShare};
   frame_.viewport = glm::vec2(superTile.width(), superTile.height());
   frame_.worldFromView = glm::mat4(glm::mat3(glm::transpose(glm::dmat3(camera_.viewFromWorld))));
   frame_.atlasEdge = settings.environment ? settings.environment->edge : 0;
@@ -165,8 +206,8 @@ void Renderer::begin(const Window& superTile, const PassSettings& settings, std:
   glBindSampler(6, 0);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lightBuffer_.name());
+  if (features_.occludes) uploadOccluders(superTile);
   checkGl("beginning the transparent pass");
-  drawSolids();
 }
 
 void Renderer::uploadSurroundings() {

@@ -24,6 +24,9 @@ class Renderer {
   // Camera, opaque depth and targets for one of them, and its solid plane.
   void begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);
 
+  // Instead of begin(), draws only the depth of the nearest solids: into the plane of the data window.
+  void solidDepth(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes, Image<float>& z);
+
   // Everything with this output, clipped to each scissor in turn (pixels of the super-tile).
   void draw(Output output, const std::vector<Window>& scissors);
   // Pixels per row and origin of the list buffers.
@@ -37,6 +40,8 @@ class Renderer {
   bool diffuses() const { return features_.diffuses; }
   // Whether a pass with these settings would.
   bool wouldScatter(const PassSettings& settings) const;
+  bool wouldOcclude(const PassSettings& settings) const;
+  bool occludes() const { return features_.occludes; }
   // Scissor tiles of the super-tile, as PassSettings::tile wants them.
   std::vector<Window> tiles() const;
   const GeometryStream& geometry() const { return stream_; }
@@ -46,6 +51,7 @@ class Renderer {
     std::vector<std::string> surface;
     bool vertexColours;
     bool canBeSolid;
+    bool infers = false;  // its rims take their occlusion from their neighbours
     const Program* programs[4] = {nullptr, nullptr, nullptr, nullptr};  // by Output, looked up once per begin()
   };
   void classify();
@@ -66,18 +72,21 @@ class Renderer {
   std::vector<Placed> placed_;  // per instance
   std::vector<Shader> shaders_;
   int lights_ = 0;
-  bool anySolid_ = false, canAdd_ = false, anyRefracts_ = false, anyDiffuses_ = false;
+  bool anySolid_ = false, canAdd_ = false, anyRefracts_ = false, anyDiffuses_ = false, anyInfers_ = false;
 
   void chooseFeatures(const PassSettings& settings);
+  void prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);
+  void uploadOccluders(const Window& superTile);
 
   PassSettings settings_;
   std::size_t geometryBytes_ = 0;
   FrameFeatures features_;
   FrameBlock frame_;
   std::optional<Targets> targets_;
-  Texture opaqueZ_, atlas_;
+  Texture opaqueZ_, atlas_, occluders_;
   std::shared_ptr<const Surroundings> atlasOf_;  // what atlas_ holds
-  Window opaqueZPart_;
+  Window opaqueZPart_, occludersPart_;
+  std::shared_ptr<const OccluderPlanes> uploadedOccluders_;
 };
 
 }  // namespace pellucid::gl

@@ -6,6 +6,7 @@
 #include <bit>
 #include <stdexcept>
 
+#include "engine_bridge/scene/foliage.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::gl {
@@ -45,6 +46,17 @@ void referencesOf(const Material& material, int references[kReferences]) {
   references[5] = material.normalTexture.texture;
 }
 
+void uploadLevel(const Texture& texture, GLint level, const Image<glm::vec4>& texels) {
+  glTextureSubImage2D(texture.name(), level, 0, 0, texels.width(), texels.height(), GL_RGBA, GL_FLOAT, texels.data());
+}
+
+// The cut that the base texture's own alpha has to reach; 0 where there is none to keep coverage for.
+float cutOfBase(const Material& material) {
+  if (material.alphaMode != AlphaMode::mask || !(material.baseColor.a > 0.0f)) return 0.0f;
+  const float cut = material.alphaCutoff / material.baseColor.a;
+  return cut <= 1.0f ? cut : 0.0f;
+}
+
 }  // namespace
 
 SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
@@ -54,9 +66,10 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
     if (material.transparent() == opaque) continue;
     int references[kReferences];
     referencesOf(material, references);
-    for (const int index : references) {
-      if (index < 0 || uploaded_.count(index)) continue;
-      const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(index));
+    for (int slot = 0; slot < kReferences; ++slot) {
+      const Key key{references[slot], slot == 0 ? cutOfBase(material) : 0.0f};
+      if (key.first < 0 || uploaded_.count(key)) continue;
+      const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(key.first));
       const Image<glm::vec4>& texels = texture.texels;
       if (texels.empty()) throw std::logic_error(texture.name + ": a texture without texels");
       if (std::max(texels.width(), texels.height()) > largest)
@@ -66,17 +79,16 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
       uploaded.texture = Texture::make();
       const auto edge = static_cast<unsigned>(std::max(texels.width(), texels.height()));
       glTextureStorage2D(uploaded.texture.name(), std::bit_width(edge), GL_RGBA32F, texels.width(), texels.height());
-      glTextureSubImage2D(uploaded.texture.name(), 0, 0, 0, texels.width(), texels.height(), GL_RGBA, GL_FLOAT,
-                          texels.data());
+      uploadLevel(uploaded.texture, 0, texels);
       checkGl("uploading texture " + texture.name);
-      uploaded.range = rangeOf(texels);
-      uploaded_.emplace(index, std::move(uploaded));
+      ranges_.emplace(key.first, rangeOf(texels));
+      uploaded_.emplace(key, std::move(uploaded));
     }
   }
 }
 
 TexelRange SceneTextures::range(int index) const {
-  return index < 0 ? TexelRange{} : uploaded_.at(index).range;
+  return index < 0 ? TexelRange{} : ranges_.at(index);
 }
 
 const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, TextureFilter filter) {
@@ -97,16 +109,27 @@ const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, Textu
   return sampler;
 }
 
+// What a mask covers stays the same at every level; other textures are averaged.
+void SceneTextures::makeMipmaps(const Key& key, Uploaded& uploaded) {
+  uploaded.mipmaps = true;
+  if (key.second <= 0.0f) {
+    glGenerateTextureMipmap(uploaded.texture.name());
+    return;
+  }
+  const auto levels = coveragePreservingMips(scene_.textures[static_cast<std::size_t>(key.first)].texels, key.second);
+  for (std::size_t level = 1; level < levels.size(); ++level)
+    uploadLevel(uploaded.texture, static_cast<GLint>(level), levels[level]);
+  checkGl("uploading the mip levels of a mask");
+}
+
 void SceneTextures::bind(const Material& material, TextureFilter filter) {
   int references[kReferences];
   referencesOf(material, references);
   for (int i = 0; i < kReferences; ++i) {
     if (references[i] < 0) continue;
-    Uploaded& uploaded = uploaded_.at(references[i]);
-    if (filter == TextureFilter::mipmap && !uploaded.mipmaps) {
-      glGenerateTextureMipmap(uploaded.texture.name());
-      uploaded.mipmaps = true;
-    }
+    const Key key{references[i], i == 0 ? cutOfBase(material) : 0.0f};
+    Uploaded& uploaded = uploaded_.at(key);
+    if (filter == TextureFilter::mipmap && !uploaded.mipmaps) makeMipmaps(key, uploaded);
     glBindTextureUnit(kUnits[i], uploaded.texture.name());
     glBindSampler(kUnits[i], samplerFor(scene_.textures[static_cast<std::size_t>(references[i])], filter).name());
   }

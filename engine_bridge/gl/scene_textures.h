@@ -1,6 +1,7 @@
 // A scene's textures on the device, and the samplers that read them.
 #pragma once
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "engine_bridge/gl/gl_objects.h"
@@ -29,11 +30,14 @@ class SceneTextures {
 
   struct Uploaded {
     Texture texture;
-    TexelRange range;
     bool mipmaps = false;  // made when a filter first asks for them
   };
+  using Key = std::pair<int, float>;  // texture, and the cut whose covered area its levels keep; 0 for none
+  void makeMipmaps(const Key& key, Uploaded& uploaded);
+
   const Scene& scene_;
-  std::map<int, Uploaded> uploaded_;
+  std::map<Key, Uploaded> uploaded_;
+  std::map<int, TexelRange> ranges_;
   std::map<int, Sampler> samplers_;
 };
 

@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "gbuffer/camera.h"
+
 namespace pellucid::gl {
 namespace {
 
@@ -17,7 +19,7 @@ void requireComplete(const Framebuffer& framebuffer) {
 }
 
 void readInto(const Texture& texture, GLenum format, int width, int height, void* first, int rowLength) {
-  const std::size_t texel = (format == GL_RGBA ? 4 : 1) * sizeof(float);
+  const std::size_t texel = (format == GL_RGBA ? 4 : 1) * sizeof(float);  // else one channel
   const std::size_t bytes =
       (static_cast<std::size_t>(height - 1) * static_cast<std::size_t>(rowLength) + static_cast<std::size_t>(width)) *
       texel;
@@ -166,6 +168,16 @@ void Targets::readSolid(Image<glm::vec4>& solid, int x, int y) const {
   checkGl("reading the solid plane back");
 }
 
+void Targets::readSolidDepth(Image<float>& z, int x, int y) const {
+  readInto(solidDepth_, GL_DEPTH_COMPONENT, width_, height_, &z.at(x, y), z.width());
+  checkGl("reading the depth of solids back");
+  for (int row = y; row < y + height_; ++row)
+    for (int column = x; column < x + width_; ++column) {
+      float& depth = z.at(column, row);
+      depth = depth > 0.0f ? static_cast<float>(kClipNear) / depth : kInfinity;
+    }
+}
+
 Image<float> Targets::readCount() const {
   Image<float> count(width_, height_);
   readInto(count_, GL_RED, width_, height_, count.data(), width_);
@@ -173,18 +185,33 @@ Image<float> Targets::readCount() const {
   return count;
 }
 
-Texture uploadPlane(const Image<float>& plane, const Window& part) {
+namespace {
+
+Texture uploadTexels(const float* texels, GLenum stored, GLenum format, int width, int height, int rowLength) {
   Texture texture = Texture::make();
-  glTextureStorage2D(texture.name(), 1, GL_R32F, part.width(), part.height());
+  glTextureStorage2D(texture.name(), 1, stored, width, height);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, plane.width());
-  glTextureSubImage2D(texture.name(), 0, 0, 0, part.width(), part.height(), GL_RED, GL_FLOAT,
-                      &plane.at(part.x0, part.y0));
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, rowLength);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, width, height, format, GL_FLOAT, texels);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  checkGl("uploading the opaque depth");
+  checkGl("uploading a plane of the opaque picture");
   return texture;
+}
+
+}  // namespace
+
+Texture uploadPlane(const Image<float>& plane, const Window& part) {
+  return uploadTexels(&plane.at(part.x0, part.y0), GL_R32F, GL_RED, part.width(), part.height(), plane.width());
+}
+
+Texture uploadPlanes(const Image<float>& red, const Image<float>& green, const Window& part) {
+  Image<glm::vec2> both(part.width(), part.height());
+  for (int y = 0; y < part.height(); ++y)
+    for (int x = 0; x < part.width(); ++x)
+      both.at(x, y) = {red.at(part.x0 + x, part.y0 + y), green.at(part.x0 + x, part.y0 + y)};
+  return uploadTexels(&both.at(0, 0).x, GL_RG32F, GL_RG, part.width(), part.height(), part.width());
 }
 
 }  // namespace pellucid::gl

@@ -32,6 +32,8 @@ class Targets {
   // Into the planes, the targets' top left pixel at (x, y); refraction and diffusion where the planes have them.
   void readSums(OitPlanes& planes, int x, int y) const;
   void readSolid(Image<glm::vec4>& solid, int x, int y) const;
+  // After beginSolidDepth() and its draws: planar metres, +inf for none.
+  void readSolidDepth(Image<float>& z, int x, int y) const;
   Image<float> readCount() const;
 
  private:
@@ -43,5 +45,7 @@ class Targets {
 
 // `part` (in pixels of the plane) as an R32F texture that is read texel by texel.
 Texture uploadPlane(const Image<float>& plane, const Window& part);
+// The same of two planes, as RG32F.
+Texture uploadPlanes(const Image<float>& red, const Image<float>& green, const Window& part);
 
 }  // namespace pellucid::gl

@@ -10,6 +10,7 @@
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/occluders.h"
 
 namespace pellucid {
 
@@ -31,6 +32,15 @@ struct ScatterSettings {
   bool prune = true;                         // leave out what the scene's materials do not have; changes no bit
 };
 
+// Ambient occlusion of cut-out surfaces: of what they cover wholly by its own pixel, of rims by the pixels beside them.
+// MODEL section 10
+struct OcclusionSettings {
+  std::shared_ptr<const OccluderPlanes> occluders;  // of the data window; null: nothing is occluded
+  bool rims = true;                                 // false leaves rims open
+  int form = shading::PLD_OCCLUSION_RELATIVE;       // PLD_OCCLUSION_*
+  float directShare = 0.0f;                         // how much of it darkens direct light too, [0,1]
+};
+
 struct PassSettings {
   shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
@@ -43,6 +53,7 @@ struct PassSettings {
   glm::vec3 surroundings{0.0f};                      // constant environment radiance, scene-linear
   std::shared_ptr<const Surroundings> environment;   // a picture of them, which wins over the constant
   ScatterSettings scatter;
+  OcclusionSettings occlusion;
 };
 
 struct PassStatistics {
@@ -82,6 +93,12 @@ class TransparentPass {
   // Exact lists of every transparent fragment in front of the G-buffer and of the nearest solid, tile by tile, top to
   // bottom; together the tiles cover the data window. Fragments of a pixel are in no order.
   void fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& tile);
+
+  // Whether some material of the scene is cut out, lit by surroundings, and has rims to infer occlusion for.
+  bool wantsOccluders(const PassSettings& settings) const;
+  // Depth of the nearest fragment that hides everything, at pixel centres, of the data window: planar metres, +inf for
+  // none. What the occluders of such a pass are made from.
+  Image<float> solidDepth(const PassSettings& settings);
 
   // Whether planes and fragments of such a pass carry refraction or diffusion.
   bool scatters(const PassSettings& settings) const;

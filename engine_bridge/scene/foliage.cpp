@@ -72,14 +72,15 @@ MaskMeasure measureMask(const Image<glm::vec4>& texels) {
     full += kind == kFull;
     between += kind == kBetween;
   }
+  const auto all = static_cast<double>(texels.size());
+  measure.covered = static_cast<double>(covered) / all;
+  measure.between = measure.unexplained = static_cast<double>(between) / all;
+  if (clear == 0 || full == 0 || measure.between > kMostBetween) return measure;  // no border could explain it
   const Image<std::uint8_t> nearby = spread(spread(kinds, 1, 0), 0, 1);
   for (std::size_t i = 0; i < texels.size(); ++i)
     unexplained += kinds[i] == kBetween && (nearby[i] & (kClear | kFull)) != (kClear | kFull);
-  const auto all = static_cast<double>(texels.size());
-  measure.covered = static_cast<double>(covered) / all;
-  measure.between = static_cast<double>(between) / all;
   measure.unexplained = static_cast<double>(unexplained) / all;
-  measure.binary = clear > 0 && full > 0 && measure.between <= kMostBetween && measure.unexplained <= kMostUnexplained;
+  measure.binary = measure.unexplained <= kMostUnexplained;
   return measure;
 }
 

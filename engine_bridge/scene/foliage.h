@@ -11,7 +11,7 @@ struct MaskMeasure {
   bool binary = false;       // PT17's baseMIPIsBinary, within the tolerances below
   double covered = 0.0;      // part of the texels with alpha >= 1/2
   double between = 0.0;      // part of the texels that are neither 0 nor 1 within kMaskNoise
-  double unexplained = 0.0;  // part of the texels that are so and belong to no border
+  double unexplained = 0.0;  // part of the texels that are so and belong to no border; all of them where none can
 };
 
 constexpr float kMaskNoise = 0.125f;        // of full alpha: what JPEG at quality 75 adds to a mask's flat parts

@@ -12,7 +12,7 @@ layout(std140, binding = 0) uniform Frame {
   int orthographic;
   vec2 viewport;         // pixels
   vec4 refraction;       // PLD_REFRACT_*; metres (fixed); focal length in x and y, pixels
-  vec4 diffusion;        // k0, k1 metres; 1 for net coverage
+  vec4 diffusion;        // k0, k1 metres; 1 for net coverage; how much occlusion darkens direct light
   mat4 worldFromView;    // turns only
   int atlasEdge;         // of the surroundings' level 0, texels
 };

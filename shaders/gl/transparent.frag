@@ -7,6 +7,7 @@
 #ifdef ENVIRONMENT
 #include "gl/environment.glsl"
 #endif
+#include "gl/occlusion.glsl"
 #include "gl/scatter.glsl"
 #if defined(OUTPUT_SUMS)
 #include "gl/sums_output.glsl"
@@ -21,6 +22,9 @@ const float kClipNear = 1e-7f;                // as in gbuffer/camera.h
 
 void main() {
   Surface surface = surfaceHere();
+#ifdef OCCLUDED
+  vec2 gradient = coverageGradient(surface.coverage);
+#endif
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float z = -viewPosition.z;
   if (outsideTriangle()) discard;
@@ -35,17 +39,24 @@ void main() {
   vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
   vec3 normal = normalHere(toEye);
   cosEye = clamp(dot(normal, toEye), PLD_GRAZING, 1.0f);
+  vec3 direct = vec3(0.0f);
+  vec3 indirect = vec3(0.0f);
 #ifdef SURROUNDINGS
-  reflected = reflectSurroundings(surface, cosEye) * surroundings.rgb;
+  indirect = reflectSurroundings(surface, cosEye) * surroundings.rgb;
 #endif
 #ifdef ENVIRONMENT
-  reflected += environmentReflected(surface, normal, toEye, cosEye);
+  indirect += environmentReflected(surface, normal, toEye, cosEye);
 #endif
 #ifdef LIGHTS
   for (int i = 0; i < lightCount; ++i) {
     Arriving arriving = arrivingAt(lights[i], viewPosition);
-    reflected += reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
+    direct += reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
   }
+#endif
+#ifdef OCCLUDED
+  reflected = occludedLight(direct, indirect, occlusionHere(surface.coverage, gradient, z, pixel), diffusion.w);
+#else
+  reflected = direct + indirect;
 #endif
 #endif
   Layer layer = layerOf(surface, reflected, cosEye, z, material.covering.g != 0.0f);

@@ -39,6 +39,12 @@ PLD_FN bool standsBefore(float z, float opaqueZ) {
   return z < bound;
 }
 
+// The same surface, as far as depth tells.
+PLD_FN bool isAtDepth(float opaqueZ, float z) {
+  precise float apart = abs(opaqueZ - z);
+  return apart <= PLD_OCCLUSION_REACH * z;
+}
+
 //   gradient  change of coverage per pixel, y down
 PLD_FN OcclusionSearch occlusionSearch(vec2 gradient) {
   precise float x = gradient.x;

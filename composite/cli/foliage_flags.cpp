@@ -1,0 +1,53 @@
+#include "composite/cli/foliage_flags.h"
+
+#include "composite/occluders.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid::cli {
+
+void FoliageFlags::addTo(CLI::App& verb) {
+  verb.add_option("--occlusion", occlusion,
+                  "Ambient occlusion of alpha-tested leaves: inferred for their rims, of their solid insides alone, off")
+      ->check(CLI::IsMember({"inferred", "solid", "off"}))
+      ->capture_default_str();
+  details[0] = verb.add_option("--occlusion-inference", inference, "published is PT17 listing 2 as printed")
+      ->check(CLI::IsMember({"relative", "published"}))
+      ->capture_default_str();
+  details[1] = verb.add_option("--occlusion-direct", direct, "How much of the occlusion darkens direct light too")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  details[2] = verb.add_option("--occlusion-radius", radius,
+                               "Metres within which things occlude, where occlusion comes from depth; a tenth of the "
+                               "depth without it")
+      ->check(CLI::PositiveNumber);
+}
+
+void FoliageFlags::applyTo(PassSettings& settings, TransparentPass* pass, const GBuffer& gbuffer, const Camera& camera,
+                           Stages& stages) const {
+  if (occlusion == "off") {
+    for (const CLI::Option* option : details)
+      if (option && option->count() > 0)
+        throw UsageError(option->get_name() + ": found it with --occlusion off, expected inferred or solid");
+    return;
+  }
+  if (occlusion == "solid" && details[0] && details[0]->count() > 0)
+    throw UsageError("--occlusion-inference: found it with --occlusion solid, expected inferred");
+  settings.occlusion.rims = occlusion == "inferred";
+  settings.occlusion.form =
+      inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE;
+  settings.occlusion.directShare = static_cast<float>(direct);
+  if (!pass || !pass->wantsOccluders(settings)) return;
+  const Image<float> solidZ = stages.time("depth of leaves", [&] { return pass->solidDepth(settings); });
+  OccluderSettings how;
+  how.screen.radius = radius;
+  std::size_t pixels = 0;
+  settings.occlusion.occluders = stages.time("occlusion of leaves", [&] {
+    return std::make_shared<OccluderPlanes>(
+        occludersOf(gbuffer, camera, nearestSolids(gbuffer, solidZ), how, nullptr, pixels));
+  });
+  if (pixels > 0)
+    spdlog::info("leaves: occlusion of {} pixels from depth alone{}", pixels,
+                 gbuffer.occlusion.empty() ? "" : ", where leaves stand that the picture lacks");
+}
+
+}  // namespace pellucid::cli
