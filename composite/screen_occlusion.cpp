@@ -4,28 +4,32 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
+
+#include "composite/nearest_pyramid.h"
 
 namespace pellucid {
 namespace {
 
 constexpr int kSlices = 3;             // directions per pixel, both ways along each
-constexpr int kSteps = 6;              // depths per way
+constexpr int kSteps = 8;              // depths per way
+constexpr double kStepPower = 1.5;     // spacing: nearer things hide more
 constexpr int kTurns = 4;              // a 4x4 block of pixels turns and shifts them 16 ways
 constexpr int kFilter = 2;             // the filter spans five pixels: each turn of the block once
-constexpr double kMostPixels = 256;    // a radius beyond this is cut: nearer things decide
+constexpr double kBlock = 0.5;         // of a step: a tap sees the nearest pixel of a block so wide
+constexpr double kFade = 0.2;          // of the radius: within it things begin to count, so that none appears at once
 constexpr double kSameSurface = 0.02;  // of the depth: how far neighbours of one surface may differ per pixel
 constexpr double kOwnPlane = 0.03;     // sine of the elevation up to which a tap is the surface itself
 constexpr double kSameFit = 1e-5;      // of the depth
-constexpr float kFar = 1e30f;
 
 class Horizons {
  public:
   Horizons(const Image<float>& viewZ, const Camera& camera, const Window& display, const Window& data,
            const ScreenOcclusionSettings& settings)
-      : viewZ_(viewZ), settings_(settings), orthographic_(camera.orthographic) {
+      : viewZ_(viewZ), nearest_(viewZ), settings_(settings), orthographic_(camera.orthographic) {
     // NDC of a data pixel, then view space: x_view = (ndc - centre) / focal [* z].
     scale_ = {2.0 / (display.width() * camera.focal.x), -2.0 / (display.height() * camera.focal.y)};
     const glm::dvec2 first(data.x0 - display.x0 + 0.5, data.y0 - display.y0 + 0.5);
@@ -33,7 +37,7 @@ class Horizons {
                (1.0 - 2.0 * first.y / display.height() - camera.centre.y) / camera.focal.y};
   }
 
-  bool hit(int x, int y) const { return inside(x, y) && viewZ_.at(x, y) > 0.0f && viewZ_.at(x, y) <= kFar; }
+  bool hit(int x, int y) const { return nearest_.hit(x, y); }
 
   // View space, y up, towards -z.
   glm::dvec3 point(int x, int y) const {
@@ -60,11 +64,12 @@ class Horizons {
     const glm::dvec3 here = point(x, y), eye = toEye(here), up = normal(x, y, here);
     const double z = -here.z, radius = settings_.radius > 0.0 ? settings_.radius : settings_.relativeRadius * z;
     const double pixel = std::abs(scale_.x) * (orthographic_ ? 1.0 : z);
-    const double reach = std::min(radius / pixel, kMostPixels);
+    const double reach = std::min(radius / pixel, static_cast<double>(viewZ_.width() + viewZ_.height()));
     if (!(reach > 1.0)) return 1.0;
     const int column = x & (kTurns - 1), row = y & (kTurns - 1), turns = kTurns * kTurns;
     const int turn = (column * 5 + row * 12) % turns;
     const double jitter = ((column * kTurns + row) * 7 % turns + 0.5) / turns;
+    const Taps taps = tapsWithin(reach, jitter);
     double sum = 0.0, weight = 0.0;
     for (int slice = 0; slice < kSlices; ++slice) {
       const double angle = glm::pi<double>() * (slice + (turn + 0.5) / turns) / kSlices;
@@ -83,7 +88,7 @@ class Horizons {
       for (const double way : {-1.0, 1.0}) {
         // Angles from the eye towards `way`; nothing hides more than the surface's own plane.
         const double own = 0.5 * glm::pi<double>() + way * lean;
-        const double horizon = std::min(highest(x, y, here, eye, up, along * way, reach, radius, jitter), own);
+        const double horizon = std::min(highest(x, y, here, eye, up, along * way, taps, radius, std::cos(own)), own);
         sum += length * arc(way * horizon, lean);
         weight += length * arc(way * own, lean);
       }
@@ -97,7 +102,24 @@ class Horizons {
     return 0.25 * (-std::cos(2.0 * h - lean) + std::cos(lean) + 2.0 * h * std::sin(lean));
   }
 
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < viewZ_.width() && y < viewZ_.height(); }
+  struct Tap {
+    double distance;  // pixels
+    int level;        // of the pyramid
+  };
+  using Taps = std::array<Tap, kSteps>;
+
+  Taps tapsWithin(double reach, double jitter) const {
+    Taps taps{};
+    double from = 1.0;
+    for (int step = 0; step < kSteps; ++step) {
+      const double to = 1.0 + std::pow((step + 1.0) / kSteps, kStepPower) * std::max(reach - 1.0, 0.0);
+      Tap& tap = taps[static_cast<std::size_t>(step)];
+      tap.distance = from + jitter * (to - from);
+      for (double block = kBlock * (to - from); block >= 2.0 && tap.level < nearest_.levels(); block *= 0.5) ++tap.level;
+      from = to;
+    }
+    return taps;
+  }
 
   glm::dvec3 slope(int x, int y, int dx, int dy, const glm::dvec3& here) const {
     const double before = misfit(x, y, -dx, -dy), after = misfit(x, y, dx, dy);
@@ -118,32 +140,30 @@ class Horizons {
     return std::abs(1.0 - (2.0 * near1 - near2) / inverse(0));
   }
 
-  // Angle from the eye's direction to the highest thing one way, radians; pi where nothing is.
+  // Angle from the eye's direction to the highest thing one way, radians.
+  //   own  cosine of the angle to the surface's own plane: what nothing leaves
   double highest(int x, int y, const glm::dvec3& here, const glm::dvec3& eye, const glm::dvec3& up,
-                 const glm::dvec2& way, double reach, double radius, double jitter) const {
-    double most = -1.0;
-    int lastX = x, lastY = y;
-    for (int step = 0; step < kSteps; ++step) {
-      const double part = (step + jitter) / kSteps;
-      const double distance = 1.0 + part * part * (reach - 1.0);  // denser near the pixel
-      const int atX = static_cast<int>(std::floor(x + 0.5 + way.x * distance)),
-                atY = static_cast<int>(std::floor(y + 0.5 + way.y * distance));
-      if (atX == lastX && atY == lastY) continue;
-      lastX = atX, lastY = atY;
-      if (!hit(atX, atY)) continue;
-      const glm::dvec3 path = point(atX, atY) - here;
+                 const glm::dvec2& way, const Taps& taps, double radius, double own) const {
+    double most = own;
+    int last = -1;
+    for (const Tap& tap : taps) {
+      const int found = nearest_.at(static_cast<int>(std::floor(x + 0.5 + way.x * tap.distance)),
+                                    static_cast<int>(std::floor(y + 0.5 + way.y * tap.distance)), tap.level);
+      if (found < 0 || found == last) continue;
+      last = found;
+      const glm::dvec3 path = point(found % viewZ_.width(), found / viewZ_.width()) - here;
       const double length = glm::length(path);
       if (!(length > 0.0) || length >= radius) continue;
       // Taps fall on pixels beside the slice: what lies in the surface's own plane hides nothing.
       if (glm::dot(path, up) <= kOwnPlane * length) continue;
-      // Hides less the nearer it lies to the radius, so that nothing appears at once.
-      const double fade = std::clamp(2.0 - 2.0 * length / radius, 0.0, 1.0);
-      most = std::max(most, glm::mix(-1.0, glm::dot(path, eye) / length, fade));
+      const double fade = std::min((1.0 - length / radius) / kFade, 1.0);
+      most = std::max(most, glm::mix(own, glm::dot(path, eye) / length, fade));
     }
     return std::acos(std::clamp(most, -1.0, 1.0));
   }
 
   const Image<float>& viewZ_;
+  NearestPyramid nearest_;
   ScreenOcclusionSettings settings_;
   bool orthographic_;
   glm::dvec2 scale_, offset_;

@@ -16,6 +16,10 @@ void FoliageFlags::addTo(CLI::App& verb) {
   details[1] = verb.add_option("--occlusion-direct", direct, "How much of the occlusion darkens direct light too")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  details[3] = verb.add_option("--occlusion-source", source,
+                               "Occlusion of the picture itself: its AO channel where it has one, or from its depth")
+                   ->check(CLI::IsMember({"auto", "screen"}))
+                   ->capture_default_str();
   details[2] = verb.add_option("--occlusion-radius", radius,
                                "Metres within which things occlude, where occlusion comes from depth; a tenth of the "
                                "depth without it")
@@ -39,6 +43,7 @@ void FoliageFlags::applyTo(PassSettings& settings, TransparentPass* pass, const 
   if (!pass || !pass->wantsOccluders(settings)) return;
   const Image<float> solidZ = stages.time("depth of leaves", [&] { return pass->solidDepth(settings); });
   OccluderSettings how;
+  how.fromFile = source == "auto";
   how.screen.radius = radius;
   std::size_t pixels = 0;
   settings.occlusion.occluders = stages.time("occlusion of leaves", [&] {
@@ -47,7 +52,7 @@ void FoliageFlags::applyTo(PassSettings& settings, TransparentPass* pass, const 
   });
   if (pixels > 0)
     spdlog::info("leaves: occlusion of {} pixels from depth alone{}", pixels,
-                 gbuffer.occlusion.empty() ? "" : ", where leaves stand that the picture lacks");
+                 gbuffer.occlusion.empty() || !how.fromFile ? "" : ", where leaves stand that the picture lacks");
 }
 
 }  // namespace pellucid::cli

@@ -9,9 +9,9 @@
 namespace pellucid::cli {
 
 struct FoliageFlags {
-  std::string occlusion = "inferred", inference = "relative";
+  std::string occlusion = "inferred", inference = "relative", source = "auto";
   double direct = 0.0, radius = 0.0;
-  CLI::Option* details[3] = {};  // that --occlusion off has no use for
+  CLI::Option* details[4] = {};  // that --occlusion off has no use for
   void addTo(CLI::App& verb);
   // Gives the settings occluders when the scene has leaves that want some: surroundings and masks must be settled.
   //   pass  null when nothing is shaded

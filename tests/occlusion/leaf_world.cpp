@@ -146,6 +146,36 @@ double LeafWorld::open(glm::dvec3 point, glm::dvec3 normal, double reach, int ra
   return 1.0 - static_cast<double>(hidden) / (edge * edge);
 }
 
+Image<float> LeafWorld::coverage(const LeafView& view, int edge) const {
+  const Window data = view.data.width() > 0 ? view.data : Window{0, 0, view.width, view.height};
+  const double tall = std::tan(0.5 * view.yfov), wide = tall * view.width / view.height;
+  const glm::dmat3 worldFromView = glm::transpose(
+      glm::dmat3(glm::lookAt(view.eye * impl_->scale, view.target * impl_->scale, glm::dvec3(0, 1, 0))));
+  const glm::vec3 eye(view.eye * impl_->scale);
+  Image<float> covered(data.width(), data.height(), 0.0f);
+  tbb::parallel_for(0, data.height(), [&](int y) {
+    for (int x = 0; x < data.width(); ++x) {
+      int hits = 0;
+      for (int i = 0; i < edge * edge; ++i) {
+        const double px = data.x0 + x + (i % edge + 0.5) / edge, py = data.y0 + y + (i / edge + 0.5) / edge;
+        const glm::dvec3 d = worldFromView * glm::dvec3((2.0 * px / view.width - 1.0) * wide,
+                                                        (1.0 - 2.0 * py / view.height) * tall, -1.0);
+        RTCRay ray{};
+        ray.org_x = eye.x, ray.org_y = eye.y, ray.org_z = eye.z;
+        ray.dir_x = static_cast<float>(d.x), ray.dir_y = static_cast<float>(d.y), ray.dir_z = static_cast<float>(d.z);
+        ray.tfar = kInfinity;
+        ray.mask = ~0u;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcOccluded1(impl_->scene, &context, &ray);
+        hits += ray.tfar < 0.0f;
+      }
+      covered.at(x, y) = static_cast<float>(hits) / static_cast<float>(edge * edge);
+    }
+  });
+  return covered;
+}
+
 LeafPicture LeafWorld::picture(const LeafView& view) const {
   LeafPicture out;
   out.display = {0, 0, view.width, view.height};

@@ -42,6 +42,9 @@ class LeafWorld {
 
   LeafPicture picture(const LeafView& view) const;
 
+  // Part of each pixel of the view's window that cards cover, by edge x edge rays against the finest masks. [0,1]
+  Image<float> coverage(const LeafView& view, int edge) const;
+
   // Cosine-weighted part of the hemisphere that is open within `reach` metres, by `rays` stratified rays (a square
   // number) against the finest masks, cut at 1/2. [0,1]
   double open(glm::dvec3 point, glm::dvec3 normal, double reach, int rays, std::uint32_t seed) const;

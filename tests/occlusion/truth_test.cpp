@@ -49,13 +49,26 @@ double interiorBeside(const LeafPicture& picture, const OccluderPlanes& occluder
   return found;
 }
 
-Errors measure(const PlantScene& scene) {
+// Of the crop, from the depth of the whole picture: what hides a leaf may stand outside of the crop.
+Image<float> occlusionFromDepth(const PlantScene& scene, const LeafPicture& crop) {
+  LeafView whole = scene.view;
+  whole.data = {};
+  const LeafPicture picture = scene.world->picture(whole);
+  ScreenOcclusionSettings settings;
+  settings.radius = kReach;
+  const Image<float> all = screenOcclusion(picture.viewZ, picture.camera, picture.display, picture.data, settings);
+  Image<float> part(crop.data.width(), crop.data.height());
+  for (int y = 0; y < part.height(); ++y)
+    for (int x = 0; x < part.width(); ++x) part.at(x, y) = all.at(crop.data.x0 + x, crop.data.y0 + y);
+  return part;
+}
+
+//   fromDepth  also measures occlusion from depth alone
+Errors measure(const PlantScene& scene, bool fromDepth) {
   const LeafPicture picture = scene.world->picture(scene.view);
   const OccluderPlanes occluders = tracedOccluders(scene, picture, 64);
   OccluderPlanes screen = occluders;
-  ScreenOcclusionSettings settings;
-  settings.radius = kReach;
-  screen.occlusion = screenOcclusion(picture.viewZ, picture.camera, picture.display, picture.data, settings);
+  if (fromDepth) screen.occlusion = occlusionFromDepth(scene, picture);
   const Image<float> file = inferOcclusion(picture.layer, occluders, kRelative).occlusion;
   Errors errors;
   for (int y = 0; y < file.height(); ++y)
@@ -89,14 +102,19 @@ void holdAgainstRays(PlantScene (*make)(double), const std::string& name) {
   for (const int height : {540, 1080, 2160}) {
     PlantScene scene = make(1.0);
     crop(scene.view, height, kLines);
-    const Errors errors = measure(scene);
+    const bool fromDepth = height == 540;  // depends on no resolution, and larger pictures take long
+    const Errors errors = measure(scene, fromDepth);
     const double ratio = errors.inferred.value() / errors.none.value();
     const double fall = 1.0 - errors.stepInferred.value() / errors.stepNone.value();
     printf(
-        "[ figure ] %s, %d lines: %zu rims: mean error none %.4f, inferred %.4f (%.0f%%), published %.4f, sources from "
-        "depth alone %.4f\n",
+        "[ figure ] %s, %d lines: %zu rims: mean error none %.4f, inferred %.4f (%.0f%%), published %.4f\n",
         name.c_str(), height, errors.none.count(), errors.none.value(), errors.inferred.value(), 100 * ratio,
-        errors.published.value(), errors.screen.value());
+        errors.published.value());
+    if (fromDepth) {
+      printf("[ figure ]   with sources from depth alone %.4f (%.0f%%)\n", errors.screen.value(),
+             100 * errors.screen.value() / errors.none.value());
+      EXPECT_LE(errors.screen.value(), 0.4 * errors.none.value());
+    }
     printf("[ figure ]   rim step %.4f -> %.4f (falls by %.0f%%; traced %.4f)\n", errors.stepNone.value(),
            errors.stepInferred.value(), 100 * fall, errors.stepTruth.value());
     // A layer shows only the rims that stand before nothing of the layer itself: close crops of the fence have none.
@@ -111,7 +129,6 @@ void holdAgainstRays(PlantScene (*make)(double), const std::string& name) {
     EXPECT_LE(ratio, 1.0 / 3.0);
     EXPECT_GE(fall, 0.8);
     EXPECT_LT(errors.inferred.value(), errors.published.value() * 1.02);  // never worse than as printed
-    EXPECT_LT(errors.screen.value(), errors.none.value());
   }
   EXPECT_GE(asFile, 1);
 }

@@ -253,5 +253,47 @@ TEST(OcclusionVerb, ThreadsChangeNoBit) {
   EXPECT_EQ(slurp(files.out), one);
 }
 
+// The tree that Blender rendered, against its path-traced picture: with its own AO layer, and without.
+TEST(OcclusionVerb, BlendersTreeComesNearerToItsPathTracedPicture) {
+  if (assets().empty()) GTEST_SKIP() << "no ../shared/assets";
+  const std::string folder = freshFolder("occlusion_blender"), from = assets() + "/blender/";
+  const OpaqueFile truth = readOpaque(from + "gt_lit.exr", {});
+  const auto error = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"composite", from + "gbuffer.exr", from + "transparent_lit.glb", "-o",
+                                       folder + "/out.exr", "--aa", "2", "--environment", "0.21,0.27,0.36"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended ended = runProgram(arguments);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const OpaqueFile picture = readOpaque(folder + "/out.exr", {});
+    double sum = 0.0;
+    for (int y = 60; y < 180; ++y)  // the tree
+      for (int x = 430; x < 580; ++x) {
+        const glm::vec3 off = glm::vec3(picture.gbuffer.beauty.at(x, y)) - glm::vec3(truth.gbuffer.beauty.at(x, y));
+        sum += static_cast<double>(std::abs(off.r) + std::abs(off.g) + std::abs(off.b)) / 3.0;
+      }
+    return sum / (120.0 * 150.0);
+  };
+  const double none = error({"--occlusion", "off"}), solid = error({"--occlusion", "solid"}),
+               inferred = error({}), fromDepth = error({"--occlusion-source", "screen"});
+  printf("[ figure ] Blender's tree against path tracing: mean error %.4f without occlusion, %.4f of solids alone, %.4f "
+         "inferred, %.4f inferred without its AO layer\n",
+         none, solid, inferred, fromDepth);
+  EXPECT_LT(solid, none);
+  EXPECT_LT(inferred, solid);
+  EXPECT_LT(fromDepth, solid);
+}
+
+TEST(OcclusionVerb, FlagsThatOcclusionHasNoUseForAreRefused) {
+  const auto refused = [](const std::vector<std::string>& flags) {
+    std::vector<std::string> arguments{"composite", "a.exr", "b.glb", "-o", "c.exr"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    const Ended ended = runProgram(arguments);
+    EXPECT_EQ(ended.code, 2) << ended.err;
+  };
+  refused({"--occlusion", "some"});
+  refused({"--occlusion-direct", "2"});
+  refused({"--occlusion-radius", "0"});
+}
+
 }  // namespace
 }  // namespace pellucid
