@@ -46,7 +46,7 @@ void holdCoverage(PlantScene scene, const std::vector<samples::Card>& cards, con
     ASSERT_GT(rims, 200u);
     EXPECT_EQ(seams, 0u);
     EXPECT_LE(std::abs(bias / count), 0.02);
-    EXPECT_LE(sum / count, samples == 1 ? 0.1 : 0.06);
+    EXPECT_LE(sum / count, samples == 1 ? 0.1 : 0.07);
   }
 }
 
@@ -71,7 +71,13 @@ TEST(FoliageCoverage, SolidAndRimsCoverWhatRaysCover) {
     scene.view = treeScene().view;
     holdCoverage(std::move(scene), apart(), mask, lines, lines * 2 / 3, "leaves apart");
   }
-  const std::vector<samples::Card> pickets = samples::fence({-0.9, 0.0, 0.0}, 1.8, 1.1, 3, 0.05);
+  std::vector<samples::Card> pickets = samples::fence({-0.9, 0.0, 0.0}, 1.8, 1.1, 3, 0.05);
+  pickets.resize(3);  // the front row
+  // Leaning, so that edges meet pixels at every place: an upright one is off by the same amount in a whole column.
+  for (samples::Card& card : pickets) {
+    card.right += glm::dvec3(0.0, 0.08 * card.right.x, 0.0);
+    card.up += glm::dvec3(-0.08 * card.up.y, 0.0, 0.0);
+  }
   PlantScene scene = fenceScene();
   scene.world = std::make_unique<LeafWorld>(std::vector<LeafWorld::Group>{{pickets, samples::slatMask(512)}});
   holdCoverage(std::move(scene), pickets, samples::slatMask(512), 540, 270, "fence");

@@ -157,7 +157,10 @@ Image<float> LeafWorld::coverage(const LeafView& view, int edge) const {
     for (int x = 0; x < data.width(); ++x) {
       int hits = 0;
       for (int i = 0; i < edge * edge; ++i) {
-        const double px = data.x0 + x + (i % edge + 0.5) / edge, py = data.y0 + y + (i / edge + 0.5) / edge;
+        // Stratified: a regular grid would round what upright edges cover.
+        const auto seed = static_cast<std::uint32_t>(y * data.width() + x), k = static_cast<std::uint32_t>(i);
+        const double px = data.x0 + x + (i % edge + samples::unit(samples::hash(seed, k, 2))) / edge,
+                     py = data.y0 + y + (i / edge + samples::unit(samples::hash(seed, k, 3))) / edge;
         const glm::dvec3 d = worldFromView * glm::dvec3((2.0 * px / view.width - 1.0) * wide,
                                                         (1.0 - 2.0 * py / view.height) * tall, -1.0);
         RTCRay ray{};
