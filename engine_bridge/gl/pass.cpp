@@ -41,7 +41,7 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, bool l
   plane(renderer.hasSolids(), 128 + 32, "solid pass", "no fragment can hide everything");
   if (renderer.hasSolids()) statistics.passes += 2;
   plane(renderer.occludes(), 64, "inferred occlusion",
-        settings.occlusion.occluders ? "no cut-out material, or no surroundings" : "switched off");
+        renderer.wouldOcclude(settings) ? "switched off" : "no cut-out material, or no surroundings");
   plane(renderer.scatters(), 128 + 32, "scattering planes", "nothing refracts or diffuses");
   plane(
       renderer.refracts(), 0, "refraction",
