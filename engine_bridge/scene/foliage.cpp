@@ -141,7 +141,10 @@ std::vector<Image<glm::vec4>> coveragePreservingMips(const Image<glm::vec4>& tex
     }
     const double below = wanted - coveredArea(averaged, cutoff, low),
                  above = coveredArea(averaged, cutoff, high) - wanted;
-    const float scale = below < above ? low : high;
+    float scale = below < above ? low : high;
+    // As good without: what nothing cuts is not brought near the cut. Nor is it by a hole that a level cannot show.
+    if (std::abs(coveredArea(averaged, cutoff) - wanted) <= std::min(below, above)) scale = 1.0f;
+    scale = std::max(scale, 0.5f * (1.0f + cutoff));
     Image<glm::vec4> level = averaged;
     for (std::size_t i = 0; i < level.size(); ++i) level[i].a = std::min(level[i].a * scale, 1.0f);
     levels.push_back(std::move(level));

@@ -220,6 +220,7 @@ TEST(Mips, OddSizesAndExtremesHold) {
         coveragePreservingMips(Image<glm::vec4>(size.x, size.y, glm::vec4(0.5f, 0.5f, 0.5f, 1.0f)), 0.5f);
     EXPECT_EQ(levels.back().size(), 1u);
     for (const auto& level : levels) EXPECT_EQ(coveredArea(level, 0.5f), 1.0);
+    EXPECT_EQ(levels.back()[0].a, 1.0f);
     const auto clear = coveragePreservingMips(Image<glm::vec4>(size.x, size.y, glm::vec4(0.0f)), 0.5f);
     for (const auto& level : clear) EXPECT_EQ(coveredArea(level, 0.5f), 0.0);
   }
