@@ -53,6 +53,14 @@ OitPlanes emptyPlanes(const Window& display, const Window& data) {
   return planes;
 }
 
+OitPlanes emptyPublishedPlanes(const Window& display, const Window& data) {
+  OitPlanes planes = emptyPlanes(display, data);
+  planes.info.tier = "published";
+  planes.info.normalisation = shading::PLD_NORMALISE_PUBLISHED;
+  planes.depth = Image<glm::vec4>(data.width(), data.height(), glm::vec4(1.0f, 1.0f, 1.0f, 0.0f));
+  return planes;
+}
+
 void addScatterPlanes(OitPlanes& planes) {
   if (planes.scatters()) return;
   const int width = planes.data.width(), height = planes.data.height();
@@ -73,11 +81,16 @@ void mergePlanes(OitPlanes& a, const OitPlanes& b) {
   add(a.radiance, b.radiance);
   add(a.weight, b.weight);
   add(a.opacity, b.opacity);
-  add(a.depth, b.depth);
+  if (a.published())
+    for (std::size_t i = 0; i < a.depth.size(); ++i) a.depth[i] *= b.depth[i];
+  else
+    add(a.depth, b.depth);
   add(a.light, b.light);
   if (b.scatters()) {
     addScatterPlanes(a);
     add(a.refraction, b.refraction);
+    if (a.published())  // offsets are summed there, and their weight only says whether there is one
+      for (std::size_t i = 0; i < a.refraction.size(); ++i) a.refraction[i].z = std::min(a.refraction[i].z, 1.0f);
     for (std::size_t i = 0; i < a.diffuseZ.size(); ++i) a.diffuseZ[i] = std::min(a.diffuseZ[i], b.diffuseZ[i]);
   }
   for (std::size_t i = 0; i < a.frontZ.size(); ++i) a.frontZ[i] = std::min(a.frontZ[i], b.frontZ[i]);

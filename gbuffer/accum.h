@@ -14,7 +14,7 @@ struct OitInfo {
   std::string method = "phenomenological";
   shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
-  std::string tier = "float";
+  std::string tier = "float";  // "float", "exact" or "published"
   std::string solidHash;  // of the solid plane: sums behind different solids do not add
 };
 
@@ -27,7 +27,7 @@ struct OitPlanes {
   Image<glm::vec4> radiance;  // A.rgb, sum of w_z o
   Image<glm::vec4> weight;    // W.rgb, layer count
   Image<glm::vec4> opacity;   // O.rgb, sum of o z
-  Image<glm::vec4> depth;     // tau.rgb, sum of w_z E
+  Image<glm::vec4> depth;     // tau.rgb, sum of w_z E; in tier "published" beta.rgb, 1 where nothing is
   Image<glm::vec4> light;     // E.rgb, sum of W z over the refracting layers
   Image<float> frontZ;        // nearest transparent layer, planar metres, +inf for none
   Image<glm::vec4> solid;     // nearest fragment that hides everything: rgb, planar z (+inf for none)
@@ -36,6 +36,7 @@ struct OitPlanes {
   Image<float> diffuseZ;        // nearest diffusing layer, planar metres, +inf for none
 
   bool scatters() const { return !refraction.empty(); }
+  bool published() const { return info.tier == "published"; }
 
   shading::OitTargets at(int x, int y) const {
     shading::OitTargets targets;
@@ -53,6 +54,8 @@ std::string weightText(const shading::WeightSettings& weight);
 
 // Planes of the window, all sums 0, frontZ and solid.z +inf.
 OitPlanes emptyPlanes(const Window& display, const Window& data);
+// The same of tier "published": beta is 1.
+OitPlanes emptyPublishedPlanes(const Window& display, const Window& data);
 // Gives planes that lack them those of refraction and diffusion, in which nothing scatters.
 void addScatterPlanes(OitPlanes& planes);
 // Adds b to a (nearest solid wins only when both are the same: solidHash). Throws MeaningError when they do not match.

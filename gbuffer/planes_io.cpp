@@ -9,6 +9,7 @@
 
 #include "gbuffer/errors.h"
 #include "gbuffer/exr_document.h"
+#include "gbuffer/published.h"
 
 namespace pellucid {
 namespace {
@@ -42,6 +43,37 @@ constexpr VectorPlane kScatterPlanes[] = {
     {"oit.delta.Z", &OitPlanes::light, 3, true},
 };
 constexpr const char* kDiffuseZ = "oit.diffuse.Z";
+// What tier "published" holds of it: PT17 table 2, decoded, and the solid plane.
+constexpr VectorPlane kPublishedPlanes[] = {
+    {"oit.A.R", &OitPlanes::radiance, 0, true},    {"oit.A.G", &OitPlanes::radiance, 1, true},
+    {"oit.A.B", &OitPlanes::radiance, 2, true},    {"oit.W", &OitPlanes::weight, 0, true},
+    {"oit.beta.R", &OitPlanes::depth, 0, true},    {"oit.beta.G", &OitPlanes::depth, 1, true},
+    {"oit.beta.B", &OitPlanes::depth, 2, true},    {"oit.solid.R", &OitPlanes::solid, 0, true},
+    {"oit.solid.G", &OitPlanes::solid, 1, true},   {"oit.solid.B", &OitPlanes::solid, 2, true},
+    {"oit.solid.Z", &OitPlanes::solid, 3, false},
+};
+constexpr VectorPlane kPublishedScatterPlanes[] = {
+    {"oit.delta.X", &OitPlanes::refraction, 0, true},
+    {"oit.delta.Y", &OitPlanes::refraction, 1, true},
+    {"oit.D2", &OitPlanes::refraction, 3, true},
+};
+
+// The planes of one kind of file: always there, or only when something scatters.
+struct PlaneSet {
+  std::vector<VectorPlane> vectors;
+  const char* scalarName = nullptr;  // none when null
+  Image<float> OitPlanes::*scalar = nullptr;
+};
+
+PlaneSet sumsOf(bool published) {
+  if (published) return {{std::begin(kPublishedPlanes), std::end(kPublishedPlanes)}};
+  return {{std::begin(kPlanes), std::end(kPlanes)}, kFrontZ, &OitPlanes::frontZ};
+}
+
+PlaneSet scatterOf(bool published) {
+  if (published) return {{std::begin(kPublishedScatterPlanes), std::end(kPublishedScatterPlanes)}};
+  return {{std::begin(kScatterPlanes), std::end(kScatterPlanes)}, kDiffuseZ, &OitPlanes::diffuseZ};
+}
 
 // Numbers as text that reads back to the same bits.
 class NumberText {
@@ -165,18 +197,15 @@ void writePlanes(const std::string& path, const OitPlanes& planes) {
     }
     file.channels.push_back(std::move(channel));
   };
-  for (const VectorPlane& plane : kPlanes) {
-    const Image<glm::vec4>& image = planes.*plane.image;
-    addChannel(plane.name, [&](std::size_t i) { return image[i][plane.component]; });
-  }
-  addChannel(kFrontZ, [&](std::size_t i) { return planes.frontZ[i]; });
-  if (planes.scatters()) {
-    for (const VectorPlane& plane : kScatterPlanes) {
+  const auto addSet = [&](const PlaneSet& set) {
+    for (const VectorPlane& plane : set.vectors) {
       const Image<glm::vec4>& image = planes.*plane.image;
       addChannel(plane.name, [&](std::size_t i) { return image[i][plane.component]; });
     }
-    addChannel(kDiffuseZ, [&](std::size_t i) { return planes.diffuseZ[i]; });
-  }
+    if (set.scalarName) addChannel(set.scalarName, [&](std::size_t i) { return (planes.*set.scalar)[i]; });
+  };
+  addSet(sumsOf(planes.published()));
+  if (planes.scatters()) addSet(scatterOf(planes.published()));
 
   file.attributes = {
       {"pellucid:method", planes.info.method},
@@ -202,26 +231,31 @@ OitPlanes readPlanes(const std::string& path) {
   const HeaderReader header(part, path);
   const OitInfo info = infoOf(header);
   const Camera camera = cameraOf(header);
-  OitPlanes planes = emptyPlanes(part.display, part.data);
+  const bool published = info.tier == "published";
+  OitPlanes planes =
+      published ? emptyPublishedPlanes(part.display, part.data) : emptyPlanes(part.display, part.data);
   planes.info = info;
   planes.camera = camera;
-  for (const VectorPlane& plane : kPlanes) {
-    Image<glm::vec4>& image = planes.*plane.image;
-    readPlane(part, plane.name, plane.finite, path,
-              [&](std::size_t i, float value) { image[i][plane.component] = value; });
-  }
-  readPlane(part, kFrontZ, false, path, [&](std::size_t i, float value) { planes.frontZ[i] = value; });
-  const bool scatters = std::any_of(std::begin(kScatterPlanes), std::end(kScatterPlanes),
-                                    [&](const VectorPlane& plane) { return part.find(plane.name) != nullptr; });
-  if (scatters || part.find(kDiffuseZ)) {
-    addScatterPlanes(planes);
-    for (const VectorPlane& plane : kScatterPlanes) {
+  const auto readSet = [&](const PlaneSet& set) {
+    for (const VectorPlane& plane : set.vectors) {
       Image<glm::vec4>& image = planes.*plane.image;
       readPlane(part, plane.name, plane.finite, path,
                 [&](std::size_t i, float value) { image[i][plane.component] = value; });
     }
-    readPlane(part, kDiffuseZ, false, path, [&](std::size_t i, float value) { planes.diffuseZ[i] = value; });
+    if (set.scalarName)
+      readPlane(part, set.scalarName, false, path, [&](std::size_t i, float value) { (planes.*set.scalar)[i] = value; });
+  };
+  readSet(sumsOf(published));
+  const PlaneSet scatter = scatterOf(published);
+  const bool scatters = std::any_of(scatter.vectors.begin(), scatter.vectors.end(),
+                                    [&](const VectorPlane& plane) { return part.find(plane.name) != nullptr; });
+  if (scatters || (scatter.scalarName && part.find(scatter.scalarName))) {
+    addScatterPlanes(planes);
+    readSet(scatter);
   }
+  if (published)
+    for (int y = 0; y < planes.data.height(); ++y)
+      for (int x = 0; x < planes.data.width(); ++x) completePublished(planes, x, y);
   return planes;
 }
 

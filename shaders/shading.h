@@ -18,6 +18,7 @@ using glm::intBitsToFloat;
 #include "shaders/shared/material.glsl"
 #include "shaders/shared/numeric.glsl"
 #include "shaders/shared/occlusion.glsl"
+#include "shaders/shared/published.glsl"
 #include "shaders/shared/refraction.glsl"
 #include "shaders/shared/resolve.glsl"
 #include "shaders/shared/scattering.glsl"

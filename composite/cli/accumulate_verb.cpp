@@ -63,16 +63,9 @@ void accumulate(const AccumulateFlags& flags) {
     return flags.method.isExact() ? exactPlanes(pass, settings, *shot) : pass.accumulate(settings);
   });
   stages.time("write", [&] { writePlanes(flags.output, planes); });
-  const PassStatistics& statistics = pass.statistics();
   nlohmann::json report{{"output", flags.output}};
   RenderCounts counts;
-  counts.triangles = statistics.triangles;
-  counts.chunks = statistics.chunks;
-  counts.tiles = statistics.tiles;
-  counts.fragments = statistics.fragments;
-  counts.bitsPerPixel = statistics.bitsPerPixel;
-  counts.passes = statistics.passes;
-  counts.pruned = statistics.pruned;
+  addStatistics(pass.statistics(), counts);
   reportRun(flags.run, stages, counts, context.description(), report);
 }
 

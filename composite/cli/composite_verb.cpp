@@ -34,7 +34,8 @@ struct CompositeFlags {
   RunFlags run;
   int samples = kDefaultSamples;
   std::optional<double> tolerance;
-  bool measure = false, selfModulation = false;
+  bool measure = false;
+  SelfModulationFlag selfModulation;
 };
 
 void composite(const CompositeFlags& flags) {
@@ -45,9 +46,9 @@ void composite(const CompositeFlags& flags) {
   if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
     throw UsageError(
         fmt::format("--tolerance: --method {} has no certificate, expected weighted", flags.method.method));
-  if (flags.tolerance && flags.method.normalisation != "spectral")
-    throw UsageError("--tolerance: --normalisation published has no certificate, expected spectral");
-  if (flags.systems != "off" && (flags.tolerance || flags.method.isOver() || flags.method.isExact() ||
+  if (flags.tolerance && (flags.method.normalisation != "spectral" || flags.method.isPublished()))
+    throw UsageError("--tolerance: the published normalisation has no certificate, expected spectral");
+  if (flags.systems != "off" && (flags.tolerance || flags.method.isOver() || flags.method.precision != "float" ||
                                  shot->deepOpaque || !shot->deep.empty() || !shot->hasScene))
     throw UsageError(
         "--systems: expected glTF alone on a flat picture, by a blended method in float: the truth, a tolerance and "
@@ -60,7 +61,8 @@ void composite(const CompositeFlags& flags) {
   settings.tolerance = flags.tolerance;
   settings.exactSums = flags.method.isExact();
   settings.deepOpaque = shot->deepOpaque.get();
-  settings.resolve.selfModulation = flags.selfModulation;
+  settings.resolve.selfModulation = flags.selfModulation.isOn(flags.method.isPublished());
+  if (flags.method.isPublished()) refusePublishedLayers(flags.layers);
   settings.pass.surroundings = shot->surroundings;
   settings.pass.environment = shot->environment;
   flags.scene.applyTo(settings.pass);
@@ -163,7 +165,7 @@ void addComposite(CLI::App& app) {
   verb->add_option("--systems", flags->systems, "A pass of its own for every input file or named node, sorted coarsely")
       ->check(CLI::IsMember({"off", "file", "node"}))
       ->capture_default_str();
-  verb->add_flag("--self-modulation", flags->selfModulation, "PT17 eq. 14, a heuristic for --normalisation published");
+  flags->selfModulation.addTo(*verb);
   addLayersOption(*verb, flags->layers);
   verb->callback([flags] { composite(*flags); });
 }

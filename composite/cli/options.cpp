@@ -156,9 +156,11 @@ void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
       })
       ->capture_default_str();
   verb.add_option("--precision", precision)
-      ->check(CLI::IsMember({"float", "exact"}))
+      ->check(CLI::IsMember({"published", "float", "exact"}))
       ->capture_default_str()
-      ->description("exact: the same bits for every order, chunk, tile and thread count");
+      ->description(
+          "exact: the same bits for every order, chunk, tile and thread count; published: the papers' 112 bits a "
+          "pixel, normalisation and self-modulation, with their losses");
   addWeightTo(verb, listsToo);
 }
 
@@ -178,9 +180,11 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
 
 std::optional<ChosenMethod> MethodFlags::listMethod() const {
   const std::optional<ChosenMethod> chosen = chooseMethod(method);
-  if (chosen && isExact())
-    throw UsageError(
-        fmt::format("--precision: found exact with --method {}, expected phenomenological or over", method));
+  if (chosen && precision != "float")
+    throw UsageError(fmt::format("--precision: found {} with --method {}, expected phenomenological{}", precision,
+                                 method, isExact() ? " or over" : ""));
+  if (isPublished() && isOver())
+    throw UsageError("--precision: found published with --method over, expected phenomenological");
   if (!chosen) return chosen;
   if (!chosen->method->weighs && weightOption && weightOption->count() > 0)
     throw UsageError(fmt::format("--weight: --method {} does not weigh its layers", method));
@@ -190,8 +194,15 @@ std::optional<ChosenMethod> MethodFlags::listMethod() const {
 }
 
 void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
+  if (isPublished()) {
+    if (normalisationOption->count() > 0 && normalisation == "spectral")
+      throw UsageError(
+          "--normalisation: found spectral with --precision published, expected published: its targets have one "
+          "denominator for all channels");
+    settings.tier = SumsTier::published;
+  }
   settings.normalisation =
-      normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED : shading::PLD_NORMALISE_SPECTRAL;
+      isPublished() || normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED : shading::PLD_NORMALISE_SPECTRAL;
   settings.weight.kind = -1;
   for (const NamedWeight& named : kWeights)
     if (weight == named.name) settings.weight.kind = named.kind;

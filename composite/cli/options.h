@@ -40,6 +40,7 @@ struct MethodFlags {
   bool isAuto() const { return weight == "auto"; }   // then the weight is to be fitted, see fitShotWeight
   bool isOver() const { return method == "over"; }
   bool isExact() const { return precision == "exact"; }
+  bool isPublished() const { return precision == "published"; }
   // A method of the table that works from fragment lists. Throws UsageError for a flag that it cannot honour.
   std::optional<ChosenMethod> listMethod() const;
   const CLI::Option *weightOption = nullptr, *normalisationOption = nullptr;

@@ -9,6 +9,7 @@
 #include "composite/cli/systems.h"
 #include "composite/fold.h"
 #include "composite/fold_exact.h"
+#include "composite/fold_published.h"
 #include "composite/over.h"
 #include "composite/study/fit_weight.h"
 
@@ -26,7 +27,8 @@ class ListPainter {
     const bool deepScatters =
         std::any_of(deep.begin(), deep.end(), [](const auto& source) { return source->mayScatter(); });
     scatters_ = !sums_ && (deepScatters || (pass && pass->scatters(sample)));
-    if (sums_ || scatters_) planes_ = emptyPlanes(gbuffer.display, gbuffer.data);
+    if (sums_) planes_ = emptySums(gbuffer.display, gbuffer.data);
+    if (scatters_) planes_ = emptyPlanes(gbuffer.display, gbuffer.data);
   }
 
   Veil paint() {
@@ -96,14 +98,20 @@ class ListPainter {
     } else if (settings_.listMethod) {
       compositeBy(*settings_.listMethod, choice, lists, data, veil);
     } else {
-      OitPlanes planes = emptyPlanes(data, data);
+      OitPlanes planes = emptySums(data, data);
       fold(lists, planes);
       veil = resolve(planes, settings_.resolve);
     }
   }
 
+  OitPlanes emptySums(const Window& display, const Window& data) const {
+    return sample_.tier == SumsTier::published ? emptyPublishedPlanes(display, data) : emptyPlanes(display, data);
+  }
+
   void fold(const FragmentLists& lists, OitPlanes& planes) const {
-    if (settings_.exactSums)
+    if (planes.published())
+      foldPublished(lists, sample_.weight, planes, counts_.clamps);
+    else if (settings_.exactSums)
       foldExact(lists, sample_.weight, sample_.normalisation, planes);
     else
       foldFragments(lists, sample_.weight, sample_.normalisation, planes);
@@ -129,6 +137,18 @@ std::string weightFlags(const shading::WeightSettings& weight) {
 
 }  // namespace
 
+void addStatistics(const PassStatistics& statistics, RenderCounts& counts) {
+  counts.triangles = statistics.triangles;
+  counts.chunks += statistics.chunks;
+  counts.tiles += statistics.tiles;
+  counts.fragments += statistics.fragments;
+  counts.bitsPerPixel = statistics.bitsPerPixel;
+  counts.solidBits = statistics.solidBits;
+  counts.passes = statistics.passes;
+  counts.pruned = statistics.pruned;
+  counts.clamps += statistics.clamps;
+}
+
 Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,
                 const GBuffer& gbuffer, Stages& stages, RenderCounts& counts) {
   VeilMean mean;
@@ -152,14 +172,9 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
       stages.time("average", [&] { mean.add(veil); });
     }
     if (!pass) continue;
-    const PassStatistics& statistics = pass->statistics();
-    counts.triangles = statistics.triangles;
-    counts.chunks += statistics.chunks;
-    counts.tiles += statistics.tiles;
-    counts.fragments += statistics.fragments;
-    counts.bitsPerPixel = statistics.bitsPerPixel;
-    if (!settings.systems) counts.passes = statistics.passes;
-    counts.pruned = statistics.pruned;
+    const int systemPasses = counts.passes;
+    addStatistics(pass->statistics(), counts);
+    if (settings.systems) counts.passes = systemPasses;
   }
   return stages.time("average", [&] { return mean.finish(); });
 }

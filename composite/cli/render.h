@@ -26,9 +26,13 @@ struct RenderSettings {
 struct RenderCounts {
   std::size_t triangles = 0, chunks = 0, tiles = 0, fragments = 0;
   ToleranceCounts tolerance = {};
-  int bitsPerPixel = 0, passes = 0;
+  int bitsPerPixel = 0, solidBits = 0, passes = 0;
+  PublishedClamps clamps = {};
   std::vector<std::string> pruned = {};
 };
+
+// Adds what one pass did.
+void addStatistics(const PassStatistics& statistics, RenderCounts& counts);
 
 //   pass  null when the shot has no geometry
 //   deep  the shot's deep files, whose samples join the pass's fragments

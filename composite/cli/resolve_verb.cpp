@@ -19,7 +19,7 @@ struct ResolveFlags {
   ReadFlags read;
   RunFlags run;
   LookupFlags lookup;
-  bool selfModulation = false;
+  SelfModulationFlag selfModulation;
 };
 
 std::string windowText(const Window& window) {
@@ -38,7 +38,8 @@ void resolveVerb(const ResolveFlags& flags) {
     throw MeaningError(fmt::format("{}: found data window {}, expected {} of {}", flags.planes[0],
                                    windowText(planes.data), windowText(opaque.gbuffer.data), flags.opaque));
   ResolveSettings settings;
-  settings.selfModulation = flags.selfModulation;
+  settings.selfModulation = flags.selfModulation.isOn(planes.published());
+  if (planes.published()) refusePublishedLayers(flags.layers);
   const LookupSettings lookup = flags.lookup.settings();
   const Veil veil = stages.time("resolve", [&] { return resolveOver(planes, settings, lookup, opaque.gbuffer); });
   const Picture picture = stages.time("compose", [&] { return compose(veil, opaque.gbuffer); });
@@ -64,7 +65,7 @@ void addResolve(CLI::App& app) {
   flags->read.addTo(*verb);
   flags->run.addTo(*verb);
   flags->lookup.addTo(*verb);
-  verb->add_flag("--self-modulation", flags->selfModulation, "PT17 eq. 14, a heuristic for --normalisation published");
+  flags->selfModulation.addTo(*verb);
   addLayersOption(*verb, flags->layers);
   verb->callback([flags] { resolveVerb(*flags); });
 }

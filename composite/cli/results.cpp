@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "gbuffer/errors.h"
 #include "gbuffer/threads.h"
 
 namespace pellucid::cli {
@@ -72,21 +73,45 @@ std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, 
   return result;
 }
 
+namespace {
+
+std::string clampText(const PublishedClamps& clamps) {
+  return fmt::format("{} numbers of layers; sums of {} pixels (radiance), {} (diffusion), {} (refraction)",
+                     clamps.written, clamps.radiance, clamps.diffusion, clamps.refraction);
+}
+
+}  // namespace
+
+void refusePublishedLayers(const std::vector<std::string>& layers) {
+  for (const std::string& name : layers)
+    if (name == "depth" || name == "weight" || name == "count")
+      throw UsageError(fmt::format("--layers: found {} with the published tier, whose targets do not hold it", name));
+}
+
 void reportRun(const RunFlags& flags, const Stages& stages, const RenderCounts& counts, const std::string& device,
                nlohmann::json& report) {
+  if (counts.clamps.total())
+    spdlog::warn("published tier: clamped to what its targets hold: {}", clampText(counts.clamps));
   if (flags.stats) {
     nlohmann::json seconds = nlohmann::json::object();
     for (const auto& [name, value] : stages.seconds()) seconds[name] = value;
     report["statistics"] = {{"device", device},      {"triangles", counts.triangles}, {"chunks", counts.chunks},
                             {"tiles", counts.tiles}, {"fragments", counts.fragments}, {"seconds", seconds}};
     report["statistics"]["bitsPerPixel"] = counts.bitsPerPixel;
+    report["statistics"]["solidBitsPerPixel"] = counts.solidBits;
+    report["statistics"]["clamped"] = {{"written", counts.clamps.written},
+                                       {"radiance", counts.clamps.radiance},
+                                       {"diffusion", counts.clamps.diffusion},
+                                       {"refraction", counts.clamps.refraction}};
     report["statistics"]["passes"] = counts.passes;
     report["statistics"]["pruned"] = counts.pruned;
     if (!flags.json) {
       fmt::print("device      {}\ntriangles   {}\nchunks      {}\ntiles       {}\nfragments   {}\n", device,
                  counts.triangles, counts.chunks, counts.tiles, counts.fragments);
       if (counts.passes)
-        fmt::print("planes      {} bits per pixel\npasses      {}\n", counts.bitsPerPixel, counts.passes);
+        fmt::print("planes      {} bits per pixel, and {} of solids\npasses      {}\n", counts.bitsPerPixel,
+                   counts.solidBits, counts.passes);
+      if (counts.clamps.total()) fmt::print("clamped     {}\n", clampText(counts.clamps));
       for (const std::string& reason : counts.pruned) fmt::print("pruned      {}\n", reason);
       for (const auto& [name, value] : stages.seconds()) fmt::print("{:<24}{:8.1f} ms\n", name, 1e3 * value);
     }

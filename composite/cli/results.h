@@ -26,6 +26,9 @@ void addLayersOption(CLI::App& verb, std::vector<std::string>& layers);
 ExtraLayer beautyLayer(const Image<glm::vec4>& rgba);  // R, G, B, A without a layer's name
 std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, const Veil& veil);
 
+// Throws UsageError for a layer that the published tier cannot give.
+void refusePublishedLayers(const std::vector<std::string>& layers);
+
 // Prints --stats as text, or with --json the report with the statistics in it.
 void reportRun(const RunFlags& flags, const Stages& stages, const RenderCounts& counts, const std::string& device,
                nlohmann::json& report);

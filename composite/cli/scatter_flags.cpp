@@ -47,6 +47,11 @@ LookupSettings LookupFlags::settings() const {
   return settings;
 }
 
+void SelfModulationFlag::addTo(CLI::App& verb) {
+  option = verb.add_flag("--self-modulation,!--no-self-modulation", asked,
+                         "PT17 eq. 14, a heuristic for --normalisation published; on with --precision published");
+}
+
 void ScatterFlags::addTo(CLI::App& verb) {
   verb.add_option("--refract", refract,
                   "Where refracted rays meet the background: fixed:METRES, depth, thickness or off")

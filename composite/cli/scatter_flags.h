@@ -17,6 +17,14 @@ struct LookupFlags {
   LookupSettings settings() const;  // throws UsageError
 };
 
+// PT17 eq. 14. On with the published tier, off elsewhere, unless the user says.
+struct SelfModulationFlag {
+  void addTo(CLI::App& verb);
+  bool isOn(bool published) const { return option->count() > 0 ? asked : published; }
+  bool asked = false;
+  const CLI::Option* option = nullptr;
+};
+
 // Of the transparent pass.
 struct ScatterFlags {
   std::string refract = "depth", diffusion = "coverage", diffusionScale = "0.3:0.5";

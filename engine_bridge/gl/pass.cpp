@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine_bridge/gl/fragment_lists.h"
+#include "engine_bridge/gl/published_targets.h"
 #include "engine_bridge/gl/renderer.h"
 #include "engine_bridge/gl/solid_hash.h"
 #include "engine_bridge/gl/transparent_pass.h"
@@ -14,6 +15,13 @@ struct TransparentPass::Impl {
   Camera camera;
   gl::Renderer renderer;
   PassStatistics statistics;
+  std::unique_ptr<gl::PublishedTargets> published;
+
+  gl::PublishedTargets& publishedTargets(int width, int height) {
+    if (!published || published->width() != width || published->height() != height)
+      published = std::make_unique<gl::PublishedTargets>(width, height);
+    return *published;
+  }
 
   void finish(std::chrono::steady_clock::time_point start, std::size_t tiles, std::size_t fragments) {
     statistics.triangles = renderer.geometry().triangles();
@@ -26,10 +34,14 @@ struct TransparentPass::Impl {
 
 namespace {
 
-// Planes that a pixel has on the device, and what is not among them.
-void describe(const gl::Renderer& renderer, const PassSettings& settings, bool light, PassStatistics& statistics) {
-  statistics.bitsPerPixel = 4 * 128 + 32;  // radiance, weight, opacity, depth; frontZ
-  statistics.passes = 1;
+// Planes that a pixel has on the device, and what is not among them. The published targets are counted as PT17 table 2
+// does: without scattering, beta's fourth byte is there but holds nothing.
+void describe(const gl::Renderer& renderer, const PassSettings& settings, const gl::SumsLayout& layout,
+              PassStatistics& statistics) {
+  const bool published = settings.tier == SumsTier::published;
+  statistics.bitsPerPixel = published ? 64 + 24 : layout.grey ? 2 * 128 + 64 + 32 : 4 * 128 + 32;
+  statistics.solidBits = renderer.hasSolids() ? 128 + 32 : 0;
+  statistics.passes = renderer.hasSolids() ? 3 : 1;
   statistics.pruned.clear();
   const auto plane = [&](bool kept, int bits, const char* name, const char* reason) {
     if (kept)
@@ -37,12 +49,14 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, bool l
     else
       statistics.pruned.push_back(std::string(name) + ": " + reason);
   };
-  plane(light, 128, "additive light", "no material adds light or transmits");
-  plane(renderer.hasSolids(), 128 + 32, "solid pass", "no fragment can hide everything");
-  if (renderer.hasSolids()) statistics.passes += 2;
+  if (!published) {
+    plane(!layout.grey, 0, "coloured opacity", "no material transmits colour");
+    plane(layout.light, 128, "additive light", "no material adds light or transmits");
+  }
+  plane(renderer.hasSolids(), 0, "solid pass", "no fragment can hide everything");
   plane(renderer.occludes(), 64, "inferred occlusion",
         renderer.wouldOcclude(settings) ? "switched off" : "no cut-out material, or no surroundings");
-  plane(renderer.scatters(), 128 + 32, "scattering planes", "nothing refracts or diffuses");
+  plane(layout.scatter, published ? 8 + 16 : 128 + 32, "scattering planes", "nothing refracts or diffuses");
   plane(
       renderer.refracts(), 0, "refraction",
       settings.scatter.refract == shading::PLD_REFRACT_OFF ? "switched off" : "no material transmits through a volume");
@@ -53,7 +67,7 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, bool l
 }  // namespace
 
 TransparentPass::TransparentPass(GlContext&, const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
-    : impl_(new Impl{gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}}) {}
+    : impl_(new Impl{gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}, {}}) {}
 
 TransparentPass::~TransparentPass() = default;
 
@@ -82,27 +96,40 @@ const PassStatistics& TransparentPass::statistics() const {
 OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
   const auto start = std::chrono::steady_clock::now();
   gl::Renderer& renderer = impl_->renderer;
-  OitPlanes planes = emptyPlanes(impl_->gbuffer.display, impl_->gbuffer.data);
+  const Window &display = impl_->gbuffer.display, &data = impl_->gbuffer.data;
+  const bool published = settings.tier == SumsTier::published;
+  OitPlanes planes = published ? emptyPublishedPlanes(display, data) : emptyPlanes(display, data);
   planes.camera = impl_->camera;
   planes.info.weight = settings.weight;
-  planes.info.normalisation = settings.normalisation;
+  if (!published) planes.info.normalisation = settings.normalisation;
+  impl_->statistics.clamps = {};
   std::size_t tiles = 0;
   for (const Window& part : renderer.superTiles()) {
-    renderer.begin(part, settings, settings.budgetBytes);
+    renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes);
     const std::vector<Window> scissors = renderer.tiles();
     tiles += scissors.size();
-    const bool scatters = renderer.scatters();
-    if (scatters) addScatterPlanes(planes);
-    const bool light = renderer.canAdd() || scatters || !settings.scatter.prune;
-    renderer.targets().beginSums(light, scatters);
-    describe(renderer, settings, light, impl_->statistics);
-    renderer.draw(gl::Output::sums, scissors);
-    renderer.targets().readSums(planes, part.x0, part.y0);
+    gl::SumsLayout layout;
+    layout.scatter = renderer.scatters();
+    layout.light = renderer.canAdd() || layout.scatter || !settings.scatter.prune;
+    layout.grey = renderer.grey();
+    if (layout.scatter) addScatterPlanes(planes);
+    describe(renderer, settings, layout, impl_->statistics);
+    if (published) {
+      gl::PublishedTargets& targets = impl_->publishedTargets(part.width(), part.height());
+      targets.begin(layout.scatter);
+      renderer.draw(gl::Output::published, scissors);
+      targets.read(planes, part.x0, part.y0, impl_->statistics.clamps);
+    } else {
+      renderer.targets().beginSums(layout);
+      renderer.draw(gl::Output::sums, scissors);
+      renderer.targets().readSums(planes, part.x0, part.y0);
+    }
     if (renderer.hasSolids()) renderer.targets().readSolid(planes.solid, part.x0, part.y0);
   }
   if (renderer.hasSolids()) planes.info.solidHash = gl::solidHash(planes.solid);
   std::size_t fragments = 0;
-  for (std::size_t i = 0; i < planes.weight.size(); ++i) fragments += static_cast<std::size_t>(planes.weight[i].a);
+  if (!published)
+    for (std::size_t i = 0; i < planes.weight.size(); ++i) fragments += static_cast<std::size_t>(planes.weight[i].a);
   impl_->finish(start, tiles, fragments);
   return planes;
 }
@@ -111,9 +138,10 @@ void TransparentPass::fragments(const PassSettings& settings, const std::functio
   const auto start = std::chrono::steady_clock::now();
   gl::Renderer& renderer = impl_->renderer;
   std::size_t bands = 0, fragments = 0;
+  impl_->statistics.clamps = {};
   for (const Window& part : renderer.superTiles()) {
     // Half for the geometry, half for the fragments.
-    renderer.begin(part, settings, settings.budgetBytes / 2);
+    renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes / 2);
     gl::listFragments(renderer, settings.budgetBytes / 2, [&](FragmentLists& lists, const Window& band) {
       const Window& data = impl_->gbuffer.data;
       const int x = data.x0 + part.x0, y = data.y0 + part.y0;

@@ -42,6 +42,10 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   switch (output) {
     case Output::sums:
       defines = {"OUTPUT_SUMS", "WEIGHT " + std::to_string(weight), "NORMALISATION " + std::to_string(normalisation)};
+      if (frame.grey) defines.emplace_back("GREY");
+      break;
+    case Output::published:
+      defines = {"OUTPUT_PUBLISHED", "WEIGHT " + std::to_string(weight)};
       break;
     case Output::count:
       defines = {"OUTPUT_COUNT"};

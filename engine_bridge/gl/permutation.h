@@ -8,17 +8,20 @@
 namespace pellucid::gl {
 
 enum class Output {
-  sums,   // the OIT planes
-  count,  // fragments per pixel
-  list,   // the fragments themselves
-  solid   // the nearest fragment that hides everything
+  sums,       // the OIT planes
+  count,      // fragments per pixel
+  list,       // the fragments themselves
+  solid,      // the nearest fragment that hides everything
+  published,  // the targets of PT17 table 2
 };
+constexpr std::size_t kOutputs = 5;
 
 struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;
   bool lights = false, surroundings = false;
   bool environment = false;                 // the surroundings are a picture
   bool solids = false;                      // there is a solid plane to test against
+  bool grey = false;                        // no material transmits colour: one opacity for all channels
   bool refracts = false, diffuses = false;  // some material of the scene does, and the settings let it
   bool occludes = false;                    // there are occluders for cut-out materials
   int rimForm = -1;                         // PLD_OCCLUSION_* of their rims; < 0 leaves rims open

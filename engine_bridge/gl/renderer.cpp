@@ -85,6 +85,7 @@ void Renderer::classify() {
       shader.canBeSolid = canBeSolid(material, colours, textures_, largestScale[i]);
       anySolid_ = anySolid_ || shader.canBeSolid;
       canAdd_ = canAdd_ || canBeAdditive(material);
+      anyColoured_ = anyColoured_ || canTransmitColour(material, shader.vertexColours);
       anyRefracts_ = anyRefracts_ || pellucid::refracts(material);
       anyDiffuses_ = anyDiffuses_ || pellucid::diffuses(material);
       shader.infers = infers[static_cast<std::size_t>(primitive.material)];
@@ -111,6 +112,7 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.environment = settings.environment != nullptr;
   features_.surroundings = !features_.environment && settings.surroundings != glm::vec3(0.0f);
   features_.solids = anySolid_ || all;
+  features_.grey = !anyColoured_ && !all;
   features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (anyRefracts_ || all);
   features_.diffuses = settings.scatter.k0 > 0.0f && (anyDiffuses_ || all);
   features_.occludes = settings.occlusion.occluders && wouldOcclude(settings);

@@ -34,6 +34,7 @@ class Renderer {
 
   Targets& targets() { return *targets_; }
   bool canAdd() const { return canAdd_; }
+  bool grey() const { return features_.grey; }
   bool hasSolids() const { return features_.solids; }
   bool scatters() const { return features_.scatters(); }
   bool refracts() const { return features_.refracts; }
@@ -52,7 +53,7 @@ class Renderer {
     bool vertexColours;
     bool canBeSolid;
     bool infers = false;  // its rims take their occlusion from their neighbours
-    const Program* programs[4] = {nullptr, nullptr, nullptr, nullptr};  // by Output, looked up once per begin()
+    const Program* programs[kOutputs] = {};  // by Output, looked up once per begin()
   };
   void classify();
   const Program& programFor(int primitive, Output output);
@@ -72,7 +73,8 @@ class Renderer {
   std::vector<Placed> placed_;  // per instance
   std::vector<Shader> shaders_;
   int lights_ = 0;
-  bool anySolid_ = false, canAdd_ = false, anyRefracts_ = false, anyDiffuses_ = false, anyInfers_ = false;
+  bool anySolid_ = false, canAdd_ = false, anyRefracts_ = false, anyDiffuses_ = false, anyColoured_ = false,
+       anyInfers_ = false;
 
   void chooseFeatures(const PassSettings& settings);
   void prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);

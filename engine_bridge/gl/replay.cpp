@@ -58,7 +58,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glDisable(GL_CULL_FACE);
   glViewport(0, 0, width, height);
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-  targets.beginSums(true, scatters);
+  targets.beginSums({true, scatters, false});
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, fragmentBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, offsetBuffer.name());

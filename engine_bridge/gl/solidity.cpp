@@ -50,6 +50,13 @@ bool canBeSolid(const Material& material, const TexelRange& colours, const Scene
   return true;
 }
 
+bool canTransmitColour(const Material& material, bool vertexColours) {
+  const auto isGrey = [](const glm::vec3& colour) { return colour.r == colour.g && colour.g == colour.b; };
+  if (material.transmission <= 0.0f) return false;
+  if (material.baseColorTexture.texture >= 0 || vertexColours || !isGrey(glm::vec3(material.baseColor))) return true;
+  return hasVolume(material) && !isGrey(material.attenuationColor);
+}
+
 bool canBeAdditive(const Material& material) {
   return material.additive || material.transmission > 0.0f;
 }

@@ -13,4 +13,7 @@ bool canBeSolid(const Material& material, const TexelRange& colours, const Scene
 // Whether a fragment's light could be added rather than averaged: only then is there anything to write to plane E.
 bool canBeAdditive(const Material& material);
 
+// Whether a layer of it may let one channel through more than another: never false where one does.
+bool canTransmitColour(const Material& material, bool vertexColours);
+
 }  // namespace pellucid::gl

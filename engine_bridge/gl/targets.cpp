@@ -11,7 +11,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Attachments: 0 to 4 the sums, of which 4 is light; 5 frontZ; 6 refraction; 7 diffuseZ.
-constexpr GLuint kLight = 4, kFrontZ = 5, kRefraction = 6, kDiffuseZ = 7;
+constexpr GLuint kLight = 4, kFrontZ = 5, kRefraction = 6, kDiffuseZ = 7, kAttachments = 8;
+constexpr GLuint kDepthOfGrey = 2;
 
 void requireComplete(const Framebuffer& framebuffer) {
   if (glCheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -19,7 +20,7 @@ void requireComplete(const Framebuffer& framebuffer) {
 }
 
 void readInto(const Texture& texture, GLenum format, int width, int height, void* first, int rowLength) {
-  const std::size_t texel = (format == GL_RGBA ? 4 : 1) * sizeof(float);  // else one channel
+  const std::size_t texel = (format == GL_RGBA ? 4 : format == GL_RG ? 2 : 1) * sizeof(float);
   const std::size_t bytes =
       (static_cast<std::size_t>(height - 1) * static_cast<std::size_t>(rowLength) + static_cast<std::size_t>(width)) *
       texel;
@@ -38,51 +39,51 @@ Texture Targets::add(GLenum format) const {
   return texture;
 }
 
-Targets::Targets(int width, int height) : width_(width), height_(height) {
-  sumsFrame_ = Framebuffer::make();
-  for (GLuint i = 0; i < 5; ++i) {
-    sums_[i] = add(GL_RGBA32F);
-    glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + i, sums_[i].name(), 0);
-  }
-  frontZ_ = add(GL_R32F);
-  glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT5, frontZ_.name(), 0);
+// Attaches a texture, made when it is first needed; planes that a layout lacks take no memory.
+void Targets::attach(GLuint attachment, Texture& texture, GLenum format) {
+  if (!texture) texture = add(format);
+  glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + attachment, texture.name(), 0);
+}
+
+Targets::Targets(int width, int height) : width_(width), height_(height), sumsFrame_(Framebuffer::make()) {
+  attach(0, sums_[0], GL_RGBA32F);
+  attach(1, sums_[1], GL_RGBA32F);
+  attach(kFrontZ, frontZ_, GL_R32F);
   checkGl("making the targets of the transparent pass");
   requireComplete(sumsFrame_);
 }
 
 // Clearing obeys the scissor; draws set theirs.
-void Targets::beginSums(bool light, bool scatter) {
-  if (scatter && !refraction_) {
-    refraction_ = add(GL_RGBA32F);
-    diffuseZ_ = add(GL_R32F);
-    glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + kRefraction, refraction_.name(), 0);
-    glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + kDiffuseZ, diffuseZ_.name(), 0);
-    checkGl("making the targets of refraction and diffusion");
-    requireComplete(sumsFrame_);
-  }
-  glDisable(GL_SCISSOR_TEST);
+void Targets::beginSums(const SumsLayout& layout) {
+  layout_ = layout;
   const GLuint frame = sumsFrame_.name();
+  bool used[kAttachments] = {true, true, true, !layout.grey, layout.light, true, layout.scatter, layout.scatter};
+  if (layout.grey) {
+    attach(kDepthOfGrey, greyDepth_, GL_RG32F);
+  } else {
+    attach(2, sums_[2], GL_RGBA32F);
+    attach(3, sums_[3], GL_RGBA32F);
+  }
+  if (layout.light) attach(kLight, sums_[kLight], GL_RGBA32F);
+  if (layout.scatter) {
+    attach(kRefraction, refraction_, GL_RGBA32F);
+    attach(kDiffuseZ, diffuseZ_, GL_R32F);
+  }
+  checkGl("making the targets of the transparent pass");
+  requireComplete(sumsFrame_);
+  glDisable(GL_SCISSOR_TEST);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
-  const GLsizei count = scatter ? 8 : 6;
-  GLenum attachments[8];
-  for (GLuint i = 0; i < 8; ++i) attachments[i] = GL_COLOR_ATTACHMENT0 + i;
-  glNamedFramebufferDrawBuffers(frame, count, attachments);
+  GLenum attachments[kAttachments];
+  for (GLuint i = 0; i < kAttachments; ++i) attachments[i] = used[i] ? GL_COLOR_ATTACHMENT0 + i : GL_NONE;
+  glNamedFramebufferDrawBuffers(frame, kAttachments, attachments);
   const float zero[4] = {0, 0, 0, 0};
   const float far[4] = {kInfinity, 0, 0, 0};
-  for (GLint i = 0; i < 5; ++i) glClearNamedFramebufferfv(frame, GL_COLOR, i, zero);
-  glClearNamedFramebufferfv(frame, GL_COLOR, GLint{kFrontZ}, far);
-  if (scatter) {
-    glClearNamedFramebufferfv(frame, GL_COLOR, GLint{kRefraction}, zero);
-    glClearNamedFramebufferfv(frame, GL_COLOR, GLint{kDiffuseZ}, far);
-  }
-  if (!light) {
-    attachments[kLight] = GL_NONE;
-    glNamedFramebufferDrawBuffers(frame, count, attachments);
-  }
   glEnable(GL_BLEND);
-  for (GLuint i = 0; i < 8; ++i) {
+  for (GLuint i = 0; i < kAttachments; ++i) {
+    const bool nearest = i == kFrontZ || i == kDiffuseZ;
+    if (used[i]) glClearNamedFramebufferfv(frame, GL_COLOR, static_cast<GLint>(i), nearest ? far : zero);
     glBlendFunci(i, GL_ONE, GL_ONE);
-    glBlendEquationi(i, i == kFrontZ || i == kDiffuseZ ? GL_MIN : GL_FUNC_ADD);
+    glBlendEquationi(i, nearest ? GL_MIN : GL_FUNC_ADD);
   }
 }
 
@@ -154,13 +155,37 @@ void Targets::bindSolid() const {
 void Targets::readSums(OitPlanes& planes, int x, int y) const {
   Image<glm::vec4>* images[] = {&planes.radiance, &planes.weight, &planes.opacity, &planes.depth, &planes.light};
   for (std::size_t i = 0; i < 5; ++i)
-    readInto(sums_[i], GL_RGBA, width_, height_, &images[i]->at(x, y), images[i]->width());
+    if (i == kLight ? layout_.light : !layout_.grey)
+      readInto(sums_[i], GL_RGBA, width_, height_, &images[i]->at(x, y), images[i]->width());
+  if (layout_.grey) readGrey(planes, x, y);
   readInto(frontZ_, GL_RED, width_, height_, &planes.frontZ.at(x, y), planes.frontZ.width());
-  if (planes.scatters()) {
+  if (layout_.scatter) {
     readInto(refraction_, GL_RGBA, width_, height_, &planes.refraction.at(x, y), planes.refraction.width());
     readInto(diffuseZ_, GL_RED, width_, height_, &planes.diffuseZ.at(x, y), planes.diffuseZ.width());
   }
   checkGl("reading the planes back");
+}
+
+// After light.
+void Targets::readGrey(OitPlanes& planes, int x, int y) const {
+  Image<glm::vec4> radiance(width_, height_), opacity(width_, height_);
+  Image<glm::vec2> depth(width_, height_);
+  readInto(sums_[0], GL_RGBA, width_, height_, radiance.data(), width_);
+  readInto(sums_[1], GL_RGBA, width_, height_, opacity.data(), width_);
+  readInto(greyDepth_, GL_RG, width_, height_, depth.data(), width_);
+  for (int row = 0; row < height_; ++row)
+    for (int column = 0; column < width_; ++column) {
+      shading::GreyTargets grey;
+      grey.radiance = radiance.at(column, row);
+      grey.opacity = opacity.at(column, row);
+      grey.depth = depth.at(column, row);
+      const int px = x + column, py = y + row;
+      const shading::OitTargets sums = shading::unpackGrey(grey, planes.light.at(px, py));
+      planes.radiance.at(px, py) = sums.radiance;
+      planes.weight.at(px, py) = sums.weight;
+      planes.opacity.at(px, py) = sums.opacity;
+      planes.depth.at(px, py) = sums.depth;
+    }
 }
 
 void Targets::readSolid(Image<glm::vec4>& solid, int x, int y) const {

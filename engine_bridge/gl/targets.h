@@ -10,6 +10,13 @@ namespace pellucid::gl {
 // window is drawn as super-tiles at multiples of it, the same on every device and whatever the flags.
 constexpr int kSuperTile = 8192;
 
+// Which planes take part, and how they lie; see shaders/gl/sums_output.glsl.
+struct SumsLayout {
+  bool light = true;     // plane E; without it, it stays 0
+  bool scatter = false;  // refraction and diffusion
+  bool grey = false;     // one opacity for all channels
+};
+
 class Targets {
  public:
   // Throws ResourceError when the device has no room.
@@ -19,9 +26,7 @@ class Targets {
   int height() const { return height_; }
 
   // Each binds and clears its framebuffer and sets blending, so that the next draws add up.
-  //   light    plane E takes part; else it stays 0
-  //   scatter  the planes of refraction and diffusion take part
-  void beginSums(bool light, bool scatter);
+  void beginSums(const SumsLayout& layout);
   void beginCount();
   // First the depth of the nearest solid, then per channel the largest radiance among those at that depth.
   void beginSolidDepth();
@@ -29,7 +34,7 @@ class Targets {
   void beginNothing();  // draws leave no pixels, only buffers
 
   void bindSolid() const;  // to texture unit 6; after beginSolidDepth()
-  // Into the planes, the targets' top left pixel at (x, y); refraction and diffusion where the planes have them.
+  // Into the planes as beginSums() laid them out, the targets' top left pixel at (x, y).
   void readSums(OitPlanes& planes, int x, int y) const;
   void readSolid(Image<glm::vec4>& solid, int x, int y) const;
   // After beginSolidDepth() and its draws: planar metres, +inf for none.
@@ -38,8 +43,11 @@ class Targets {
 
  private:
   Texture add(GLenum format) const;
+  void attach(GLuint attachment, Texture& texture, GLenum format);
+  void readGrey(OitPlanes& planes, int x, int y) const;
   int width_, height_;
-  Texture sums_[5], frontZ_, refraction_, diffuseZ_, solid_, solidDepth_, count_;
+  SumsLayout layout_;
+  Texture sums_[5], greyDepth_, frontZ_, refraction_, diffuseZ_, solid_, solidDepth_, count_;
   Framebuffer sumsFrame_, solidFrame_, countFrame_, emptyFrame_;
 };
 

@@ -11,6 +11,7 @@
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
 #include "gbuffer/occluders.h"
+#include "gbuffer/published.h"
 
 namespace pellucid {
 
@@ -41,7 +42,11 @@ struct OcclusionSettings {
   float directShare = 0.0f;                         // how much of it darkens direct light too, [0,1]
 };
 
+// What the sums are kept in. DESIGN, Precision tiers; `exact` is fragments() and a fold.
+enum class SumsTier { float32, published };
+
 struct PassSettings {
+  SumsTier tier = SumsTier::float32;
   shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
   glm::dvec2 sample{0.5, 0.5};  // where in the pixel, y down; (0.5, 0.5) is the centre
@@ -49,6 +54,7 @@ struct PassSettings {
   MaskEdge mask = MaskEdge::smooth;
   SubmissionOrder order;
   std::size_t budgetBytes = std::size_t{256} << 20;  // geometry, and for lists fragments, resident at once
+  std::size_t chunkBytes = 0;                        // geometry of one chunk; 0: what the budget leaves. For tests
   int tile = 0;                                      // scissor tiles of this edge in pixels; 0 picks one
   glm::vec3 surroundings{0.0f};                      // constant environment radiance, scene-linear
   std::shared_ptr<const Surroundings> environment;   // a picture of them, which wins over the constant
@@ -59,9 +65,11 @@ struct PassSettings {
 struct PassStatistics {
   std::size_t triangles = 0, chunks = 0, tiles = 0, fragments = 0;
   double seconds = 0;
-  int bitsPerPixel = 0;             // of the planes that were accumulated, solids included
+  int bitsPerPixel = 0;             // of the planes that were accumulated
+  int solidBits = 0;                // a pixel, of the solid pass
   int passes = 0;                   // over the geometry
   std::vector<std::string> pruned;  // what was left out, and why
+  PublishedClamps clamps;           // tier published
 };
 
 // A headless GL 4.5 core context: EGL surfaceless, else EGL device. Throws ResourceError when there is none.

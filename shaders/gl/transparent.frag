@@ -1,5 +1,5 @@
 // One transparent fragment: fetch, shade through the shared model, write. Defines choose the output (OUTPUT_SUMS,
-// OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID), what the material has and what the frame needs.
+// OUTPUT_PUBLISHED, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID), what the material has and what the frame needs.
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
@@ -11,6 +11,8 @@
 #include "gl/scatter.glsl"
 #if defined(OUTPUT_SUMS)
 #include "gl/sums_output.glsl"
+#elif defined(OUTPUT_PUBLISHED)
+#include "gl/published_output.glsl"
 #elif defined(OUTPUT_COUNT)
 layout(location = 0) out float fragmentCount;
 #elif defined(OUTPUT_LIST)
@@ -71,25 +73,31 @@ void main() {
 #ifdef SOLIDS
   if (hidesAll || z > texelFetch(solid, pixel, 0).a) discard;
 #endif
-#if defined(OUTPUT_SUMS)
+#if defined(OUTPUT_SUMS) || defined(OUTPUT_PUBLISHED)
   WeightSettings settings;
   settings.kind = WEIGHT;
   settings.rangeNear = weightNear;
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
-  writeSums(layer, settings);
-#ifdef SCATTER
-  writeScatter(layer, scatterHere(layer, surface, pixel));
 #endif
-#elif defined(OUTPUT_COUNT)
-  fragmentCount = 1.0f;
-#else
+#if defined(OUTPUT_LIST) || defined(OUTPUT_PUBLISHED)
   Scatter scatter;
   scatter.offset = vec2(0.0f);
   scatter.variance = 0.0f;
 #ifdef SCATTER
   scatter = scatterHere(layer, surface, pixel);
 #endif
+#endif
+#if defined(OUTPUT_SUMS)
+  writeSums(layer, settings);
+#ifdef SCATTER
+  writeScatter(layer, scatterHere(layer, surface, pixel));
+#endif
+#elif defined(OUTPUT_PUBLISHED)
+  writePublished(layer, scatter, settings);
+#elif defined(OUTPUT_COUNT)
+  fragmentCount = 1.0f;
+#else
   appendFragment(layer, scatter, pixel);
 #endif
 #endif

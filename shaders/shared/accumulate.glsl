@@ -92,6 +92,31 @@ PLD_FN OitTargets packSums(OitSums sums) {
   return targets;
 }
 
+// The same sums where every layer transmits all colours alike: one denominator, one opacity, one optical depth.
+struct GreyTargets {
+  vec4 radiance;  // A.rgb, W
+  vec4 opacity;   // O, opacityWeight, opacityZ, count
+  vec2 depth;     // tau, lightWeight
+};
+
+PLD_FN GreyTargets packGrey(OitSums sums) {
+  GreyTargets targets;
+  targets.radiance = vec4(sums.numerator, sums.denominator.r);
+  targets.opacity = vec4(sums.opacity.r, sums.opacityWeight, sums.opacityZ, sums.count);
+  targets.depth = vec2(sums.depth.r, sums.lightWeight);
+  return targets;
+}
+
+PLD_FN OitTargets unpackGrey(GreyTargets grey, vec4 light) {
+  OitTargets targets;
+  targets.radiance = vec4(vec3(grey.radiance), grey.opacity.y);
+  targets.weight = vec4(vec3(grey.radiance.a), grey.opacity.a);
+  targets.opacity = vec4(vec3(grey.opacity.x), grey.opacity.z);
+  targets.depth = vec4(vec3(grey.depth.x), grey.depth.y);
+  targets.light = light;
+  return targets;
+}
+
 PLD_FN OitSums unpackSums(OitTargets targets) {
   OitSums sums;
   sums.numerator = vec3(targets.radiance);

@@ -56,8 +56,9 @@ TEST(Permutations, EverySurfaceCompilesAndLinks) {
   gl::FrameFeatures frame;
   std::size_t turn = 0;
   for (const Defines& surface : all) {
-    frame.solids = turn / 4 % 2 == 1;
-    build(gl::outputDefines(static_cast<gl::Output>(turn % 4), frame, shading::PLD_WEIGHT_EQ5, turn / 8 % 2 ? 0 : 1),
+    frame.solids = turn / gl::kOutputs % 2 == 1;
+    frame.grey = turn / (2 * gl::kOutputs) % 2 == 1;
+    build(gl::outputDefines(static_cast<gl::Output>(turn % gl::kOutputs), frame, shading::PLD_WEIGHT_EQ5, turn / 8 % 2 ? 0 : 1),
           surface);
     ++turn;
   }
@@ -95,7 +96,7 @@ TEST(Permutations, EveryOutputCompilesAndLinks) {
     frame.solids = solids;
     for (const Material& material : {plain, glass}) {
       const Defines surface = gl::surfaceDefines(material, false, frame);
-      for (const gl::Output output : {gl::Output::count, gl::Output::list, gl::Output::solid})
+      for (const gl::Output output : {gl::Output::count, gl::Output::list, gl::Output::solid, gl::Output::published})
         build(gl::outputDefines(output, frame, 0, 0), surface);
       for (int weight = shading::PLD_WEIGHT_EQ5; weight <= shading::PLD_WEIGHT_UNIFORM; ++weight)
         for (const int normalisation : {shading::PLD_NORMALISE_SPECTRAL, shading::PLD_NORMALISE_PUBLISHED})

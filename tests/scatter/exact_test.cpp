@@ -1,6 +1,5 @@
-// The `exact` tier: no order, chunk, tile or thread count changes a bit, and every sum is the true one.
+// The `exact` fold: no order changes a bit, and every sum is the true one. Whole scenes: samples_test.cpp.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -144,58 +143,6 @@ TEST(Exact, RandomStacksOverTwelveDecadesOfWeight) {
       "200 stacks, 20 shuffles: words that change, exact %zu, float %zu; largest error against long double, exact "
       "%.2g, float %.2g\n",
       exactWords, floatWords, worst[0], worst[1]);
-}
-
-OitPlanes rendered(Stage& stage, const PassSettings& settings) {
-  OitPlanes planes = emptyPlanes(stage.gbuffer.display, stage.gbuffer.data);
-  for (const FragmentLists& lists : stage.fragments(settings))
-    foldExact(lists, settings.weight, settings.normalisation, planes);
-  return planes;
-}
-
-TEST(Exact, NoOrderChunkTileOrThreadCountShows) {
-  Stage stage(160, 90);
-  stage.gbuffer.viewZ = Image<float>(160, 90, 40.0f);
-  Random random(32);
-  Material glass;
-  glass.name = "glass";
-  glass.transmission = 0.7f;
-  glass.metallic = 0.0f;
-  glass.roughness = 0.3f;
-  glass.volume = glass.doubleSided = true;
-  glass.thickness = 0.1f;
-  glass.baseColor = glm::vec4(0.9f, 0.4f, 0.6f, 1.0f);
-  const int materials[] = {stage.add(unlitBlend(glm::vec3(0.2f, 0.6f, 3.0f), 0.4f)),
-                           stage.add(unlitBlend(glm::vec3(0.9f, 0.1f, 0.2f), 0.003f)), stage.add(glass),
-                           stage.add(unlitBlend(glm::vec3(0.5f), 1.0f))};
-  for (int i = 0; i < 60; ++i) {
-    const double x = random.between(-20, 140), y = random.between(-20, 70),
-                 z = std::pow(10.0, random.between(-0.5, 1.5));
-    const double other = random.below(3) ? z * random.between(0.8, 1.25) : z;
-    stage.slanted(x, y, x + random.between(10, 80), y + random.between(10, 60), z, other, materials[random.below(4)]);
-  }
-  // Coplanar and duplicated layers, and solids that tie.
-  for (int i = 0; i < 3; ++i) stage.quad(20, 20, 90, 70, 3.0, materials[0]);
-  stage.quad(60, 10, 120, 60, 5.0, materials[3]);
-  stage.quad(70, 20, 150, 80, 5.0, stage.add(unlitBlend(glm::vec3(0.1f, 0.9f, 0.3f), 1.0f)));
-
-  PassSettings settings;
-  settings.weight = kWeight;
-  const OitPlanes first = rendered(stage, settings);
-  ASSERT_TRUE(first.scatters());
-  const std::size_t budgets[] = {std::size_t{64} << 10, std::size_t{1} << 20, std::size_t{256} << 20};
-  const int tiles[] = {0, 37, 64};
-  std::size_t words = 0;
-  for (std::uint64_t turn = 0; turn < 20; ++turn) {
-    settings.order.kind = turn == 0 ? SubmissionOrder::reverse : SubmissionOrder::shuffle;
-    settings.order.seed = turn;
-    settings.budgetBytes = budgets[turn % 3];
-    settings.tile = tiles[turn / 3 % 3];
-    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 1 + turn % 2);
-    words += differingWords(first, rendered(stage, settings));
-  }
-  std::printf("20 shuffles at 160 x 90, 3 chunk sizes, 3 tile sizes, 1 and 2 threads: %zu differing words\n", words);
-  EXPECT_EQ(words, 0u);
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+#include "composite/fold_published.h"
+
+#include <algorithm>
+
+#include "composite/denormals.h"
+#include "composite/fold.h"
+
+namespace pellucid {
+namespace {
+
+// Fixed-function blending of 8-bit targets: the source becomes steps first, and every result is rounded to them.
+void blend(const shading::PublishedTargets& layer, PublishedPixel& pixel) {
+  for (int c = 0; c < 4; ++c) pixel.radiance[c] = shading::roundedToHalf(pixel.radiance[c] + layer.radiance[c]);
+  for (int c = 0; c < 3; ++c) {
+    const int passed = 255 - shading::unormOf(layer.beta[c]);
+    pixel.beta[c] = static_cast<std::uint8_t>((pixel.beta[c] * passed + 127) / 255);
+  }
+  pixel.beta[3] = static_cast<std::uint8_t>(std::min(pixel.beta[3] + shading::unormOf(layer.beta.a), 255));
+  for (int c = 0; c < 2; ++c)
+    pixel.delta[c] =
+        static_cast<std::int8_t>(std::clamp(pixel.delta[c] + shading::snormOf(layer.delta[c]), -127, 127));
+}
+
+}  // namespace
+
+void foldPublished(const FragmentLists& lists, const shading::WeightSettings& weight, OitPlanes& planes,
+                   PublishedClamps& clamps) {
+  const FlushDenormals flush;
+  copySolids(lists, planes);
+  if (anyScatters(lists)) addScatterPlanes(planes);
+  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
+  std::size_t at = 0;
+  for (int y = 0; y < lists.window.height(); ++y)
+    for (int x = 0; x < lists.window.width(); ++x, ++at) {
+      PublishedPixel pixel;
+      for (std::uint64_t i = lists.offsets[at]; i < lists.offsets[at + 1]; ++i) {
+        const Fragment& fragment = lists.fragments[i];
+        if (!takesPart(fragment, lists.solid.at(x, y))) continue;
+        const shading::PublishedTargets layer =
+            shading::packPublished(layerFrom(fragment), scatterFrom(fragment), weight);
+        clamps.written += static_cast<std::uint64_t>(layer.clamped);
+        blend(layer, pixel);
+      }
+      storePublished(pixel, planes, left + x, top + y, clamps);
+    }
+}
+
+}  // namespace pellucid
