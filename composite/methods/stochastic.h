@@ -1,0 +1,85 @@
+// Stochastic transparency (Enderton et al. 2010, ST10): every fragment hides a random share o of a pixel's samples, and
+// the nearest of each sample wins. Right on the average in any order; the rest is noise, which S samples push down.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "composite/methods/method.h"
+
+namespace pellucid {
+
+struct StochasticSettings {
+  enum class Variant {
+    basic,  // section 3.1: colours of the winners; the background shows where a sample is empty
+    alpha,  // section 3.3: the same, scaled to the exact net opacity over the exactly dimmed background
+    depth,  // section 3.4: every fragment by its opacity and the share of samples that it is visible in
+  };
+  Variant variant = Variant::depth;
+  bool corrected = true;   // of depth: scaled to the exact net opacity. basic never is, alpha always
+  bool stratified = true;  // masks; otherwise a coin per sample
+  int samples = 64;        // S of a pixel, in all passes together, [1, kMostSamples]
+  std::uint32_t seed = 0;
+
+  static constexpr int kMostSamples = 4096;
+};
+
+// Random orders of S samples. A mask is a run of R ranks of one of them, so masks of different R nest.
+class MaskTable {
+ public:
+  explicit MaskTable(int samples);
+  // Rank of sample s, [0, S), in the order that `key` picks. Over keys, all subsets are equally likely, but for the
+  // finite table: kRows orders, each turned by any of S offsets.
+  std::uint32_t rank(std::uint32_t key, std::uint32_t s) const {
+    const std::uint32_t bits = shading::hashOf(key ^ 0x85ebca6bu);
+    const std::uint32_t turned = s + (bits >> kRowBits) % samples_;
+    return ranks_[(bits & (kRows - 1)) * samples_ + (turned < samples_ ? turned : turned - samples_)];
+  }
+
+ private:
+  static constexpr std::uint32_t kRowBits = 11, kRows = 1u << kRowBits;
+  std::uint32_t samples_;
+  std::vector<std::uint16_t> ranks_;
+};
+
+// What samples of one pixel add up to: averages over its samples, before ST10's division.
+struct StochasticSums {
+  glm::dvec3 light{0.0};  // F(B), or F(U): premultiplied radiance
+  glm::dvec3 unit{0.0};   // F(B1), or F(U1): the same of white layers
+  glm::dvec3 added{0.0};  // light of layers that hide nothing: by visibility under every variant, never scaled
+  glm::dvec3 empty{1.0};  // share of samples that no fragment covers
+  glm::dvec3 beta{1.0};   // exact net transmission
+};
+
+struct StochasticShare {
+  int first = 0, step = 1;  // this pass holds the pixel's samples first, first + step, ...
+};
+
+// Samples one pixel. `layers` are sorted here, by depth and then identity: their order does not matter. No two may have
+// one identity: they would share their mask.
+//   pixel  display coordinates
+StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
+                           const MaskTable& masks, const StochasticShare& share);
+
+// ST10 sections 3.3, 3.4 and 4: the layers' light after correction.
+//   hidden  exact net opacity 1 - beta, filtered over the pixel's passes
+glm::dvec3 stochasticLight(const StochasticSums& sums, const glm::dvec3& hidden, const StochasticSettings& settings);
+
+// N jittered passes of one picture (ST10 section 3.5): masks are stratified across all of them, sums are filtered
+// before the division, and the background is dimmed pass by pass.
+class StochasticMean {
+ public:
+  StochasticMean(int width, int height, const StochasticSettings& settings, int passes);
+  // Adds pass `pass`. Writes transmission, solids, front depth and touched of the lists' window to `veil`, whose light
+  // still lacks the layers'.
+  void add(int pass, const FragmentLists& lists, const Window& data, Veil& veil);
+  // Adds the layers' light to the mean of those veils.
+  void finish(Veil& mean) const;
+
+ private:
+  StochasticSettings settings_;
+  int passes_;
+  std::shared_ptr<const MaskTable> masks_;
+  Image<glm::vec3> light_, unit_, added_, hidden_;
+};
+
+}  // namespace pellucid
