@@ -22,6 +22,7 @@ using glm::intBitsToFloat;
 #include "shaders/shared/refraction.glsl"
 #include "shaders/shared/resolve.glsl"
 #include "shaders/shared/scattering.glsl"
+#include "shaders/shared/shadow.glsl"
 #include "shaders/shared/stochastic.glsl"
 #include "shaders/shared/surface.glsl"
 #include "shaders/shared/weight.glsl"

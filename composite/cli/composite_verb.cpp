@@ -9,6 +9,7 @@
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
+#include "composite/cli/shadow_flags.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/systems.h"
 #include "composite/cli/verbs.h"
@@ -32,6 +33,7 @@ struct CompositeFlags {
   LookupFlags lookup;
   FoliageFlags foliage;
   RunFlags run;
+  ShadowFlags shadow;
   int samples = kDefaultSamples;
   std::optional<double> tolerance;
   bool measure = false;
@@ -41,6 +43,7 @@ struct CompositeFlags {
 void composite(const CompositeFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
+  flags.shadow.check();
   const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
@@ -70,6 +73,7 @@ void composite(const CompositeFlags& flags) {
   flags.scatter.applyTo(settings.pass);
   settings.lookup = flags.lookup.settings();
 
+  const ShadowResult shadows = stages.time("shadows", [&] { return castShadows(flags.shadow, *shot, flags.samples); });
   std::unique_ptr<GlContext> context;
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
@@ -87,7 +91,8 @@ void composite(const CompositeFlags& flags) {
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
   RenderCounts counts;
   const Veil veil = renderVeil(pass.get(), shot->deep, settings, gbuffer, stages, counts);
-  const Picture picture = stages.time("compose", [&] { return compose(veil, gbuffer); });
+  Picture picture = stages.time("compose", [&] { return compose(veil, gbuffer); });
+  for (std::size_t i = 0; i < shadows.touched.size(); ++i) picture.touched[i] |= shadows.touched[i];
 
   nlohmann::json report;
   if (flags.tolerance) {
@@ -121,6 +126,7 @@ void composite(const CompositeFlags& flags) {
     if (!flags.run.json) fmt::print("error of {} against sorted over: {}\n", flags.method.method, errorLine(error));
   }
   std::vector<ExtraLayer> layers = requestedLayers(flags.layers, veil);
+  layers.insert(layers.end(), shadows.layers.begin(), shadows.layers.end());
   if (wantsDebugLayers(flags.layers)) {
     if (!pass)
       throw UsageError("--layers: D, delta, weight and count show the transparent pass: found deep files alone");
@@ -154,6 +160,7 @@ void addComposite(CLI::App& app) {
   flags->scatter.addTo(*verb);
   flags->lookup.addTo(*verb);
   flags->foliage.addTo(*verb);
+  flags->shadow.addTo(*verb);
   flags->run.addTo(*verb);
   verb->add_option("--aa", flags->samples, "Jittered passes, averaged; 1 samples pixel centres")
       ->check(CLI::Range(1, 4096))

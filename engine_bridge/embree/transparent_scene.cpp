@@ -9,7 +9,19 @@ struct TransparentScene::Query {
   RTCIntersectContext context;  // first, so that a pointer to it is one to this
   const Ray* ray;
   std::vector<Crossing>* crossings;
+  bool any;      // not a camera's ray: both sides, by distance
+  double reach;  // of those
 };
+
+namespace {
+
+// Of the point that `hit` weighs, along the ray, in lengths of its direction.
+double distanceAlong(const Ray& ray, const Corners& corners, const TriangleHit& hit) {
+  const glm::dvec3 point = hit.weight[0] * corners.p[0] + hit.weight[1] * corners.p[1] + hit.weight[2] * corners.p[2];
+  return glm::dot(point - ray.origin, ray.direction) / glm::dot(ray.direction, ray.direction);
+}
+
+}  // namespace
 
 // Wider than the triangle by far more than the rounding of Embree's own arithmetic, which is in float.
 void TransparentScene::boundsOf(const RTCBoundsFunctionArguments* arguments) {
@@ -38,7 +50,12 @@ void TransparentScene::test(const RTCIntersectFunctionNArguments* arguments) {
   auto* query = reinterpret_cast<Query*>(arguments->context);
   const Corners corners =
       cornersOf(owner.primitiveOf(part.instance), owner.placed_[part.instance].viewFromObject, arguments->primID);
-  const std::optional<TriangleHit> hit = intersectHalfOpen(*query->ray, corners, owner.orthographic_);
+  std::optional<TriangleHit> hit = intersectHalfOpen(*query->ray, corners, query->any ? false : owner.orthographic_);
+  if (hit && query->any) {
+    hit->z = distanceAlong(*query->ray, corners, *hit);
+    if (hit->z > 0.0 && hit->z <= query->reach) query->crossings->push_back({part.instance, arguments->primID, *hit});
+    return;
+  }
   if (!hit || !(hit->z > 0.0) || (part.singleSided && !hit->front)) return;
   query->crossings->push_back({part.instance, arguments->primID, *hit});
 }
@@ -65,23 +82,32 @@ TransparentScene::TransparentScene(const Scene& scene, const Camera& camera)
   device_.check("building the BVH of transparent triangles");
 }
 
-void TransparentScene::cross(const Ray& ray, float reach, std::vector<Crossing>& crossings) const {
-  Query query{};
+void TransparentScene::run(Query& query, float reach) const {
   rtcInitIntersectContext(&query.context);
-  query.ray = &ray;
-  query.crossings = &crossings;
   RTCRayHit packet{};
-  packet.ray.org_x = static_cast<float>(ray.origin.x);
-  packet.ray.org_y = static_cast<float>(ray.origin.y);
-  packet.ray.org_z = static_cast<float>(ray.origin.z);
-  packet.ray.dir_x = static_cast<float>(ray.direction.x);
-  packet.ray.dir_y = static_cast<float>(ray.direction.y);
-  packet.ray.dir_z = static_cast<float>(ray.direction.z);
+  packet.ray.org_x = static_cast<float>(query.ray->origin.x);
+  packet.ray.org_y = static_cast<float>(query.ray->origin.y);
+  packet.ray.org_z = static_cast<float>(query.ray->origin.z);
+  packet.ray.dir_x = static_cast<float>(query.ray->direction.x);
+  packet.ray.dir_y = static_cast<float>(query.ray->direction.y);
+  packet.ray.dir_z = static_cast<float>(query.ray->direction.z);
   packet.ray.tfar = reach * 1.0001f;  // boxes are found in float; what is beyond is left to the caller's test
   packet.ray.mask = 0xffffffffu;
   packet.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   packet.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(top_, &query.context, &packet);
+}
+
+void TransparentScene::cross(const Ray& ray, float reach, std::vector<Crossing>& crossings) const {
+  Query query{{}, &ray, &crossings, false, 0.0};
+  run(query, reach);
+}
+
+void TransparentScene::crossAny(const glm::dvec3& origin, const glm::dvec3& direction, double reach,
+                                std::vector<Crossing>& crossings) const {
+  const Ray ray{origin, direction};
+  Query query{{}, &ray, &crossings, true, reach};
+  run(query, static_cast<float>(reach));
 }
 
 }  // namespace pellucid::rays

@@ -22,6 +22,11 @@ class TransparentScene {
 
   // Every crossing of the ray with 0 < z <= reach, in no order: back faces of single-sided materials left out.
   void cross(const Ray& ray, float reach, std::vector<Crossing>& crossings) const;
+  // Every crossing of any ray with 0 < t <= reach, in no order, both sides of everything: for rays that are not the
+  // camera's. hit.z is t, in lengths of the direction; hit.front is as seen from the origin.
+  //   reach  infinity allowed
+  void crossAny(const glm::dvec3& origin, const glm::dvec3& direction, double reach,
+                std::vector<Crossing>& crossings) const;
 
   const Scene& scene() const { return scene_; }
   const Placed& placed(std::uint32_t instance) const { return placed_[instance]; }
@@ -35,6 +40,7 @@ class TransparentScene {
   struct Query;
   static void boundsOf(const RTCBoundsFunctionArguments* arguments);
   static void test(const RTCIntersectFunctionNArguments* arguments);
+  void run(Query& query, float reach) const;
   const Primitive& primitiveOf(std::uint32_t instance) const {
     return scene_.primitives[static_cast<std::size_t>(scene_.instances[instance].primitive)];
   }

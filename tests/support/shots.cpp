@@ -68,6 +68,10 @@ void writeGlb(const std::string& path, const std::vector<Quad>& quads, const Glb
     scene.push_back(nodes.size());
     nodes.push_back({{"camera", 0}, {"name", "cam"}});
   }
+  for (const json& node : options.nodes) {
+    scene.push_back(nodes.size());
+    nodes.push_back(node);
+  }
   root["nodes"] = nodes;
   root["scenes"] = {{{"nodes", scene}}};
   root["extensionsUsed"] = {"KHR_materials_unlit"};

@@ -16,6 +16,7 @@ struct Quad {
 struct GlbOptions {
   bool camera = true;                               // node "cam" at the origin, looking down -z
   double yfov = 0.9272952180016122;                 // 2 atan(1/2): the picture is z metres high at distance z
+  nlohmann::json nodes = nlohmann::json::array();   // more nodes of the scene
   nlohmann::json extra = nlohmann::json::object();  // merged into the top level
 };
 

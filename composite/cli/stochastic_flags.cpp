@@ -1,0 +1,70 @@
+#include "composite/cli/stochastic_flags.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gbuffer/errors.h"
+
+namespace pellucid::cli {
+
+using Variant = StochasticSettings::Variant;
+
+namespace {
+
+constexpr int kDefaultSamples = 64;
+
+}  // namespace
+
+std::optional<Variant> stochasticVariant(const std::string& method) {
+  if (method == "stochastic" || method == "stochastic:depth") return Variant::depth;
+  if (method == "stochastic:basic") return Variant::basic;
+  if (method == "stochastic:alpha") return Variant::alpha;
+  return std::nullopt;
+}
+
+void StochasticFlags::addTo(CLI::App& verb) {
+  samplesOption_ = verb.add_option("--samples", samples,
+                                   fmt::format("Of --method stochastic: samples S of a pixel, in all --aa passes "
+                                               "together; without it the first multiple of --aa from {}",
+                                               kDefaultSamples))
+                       ->check(CLI::Range(1, StochasticSettings::kMostSamples));
+  seedOption_ = verb.add_option("--seed", seed, "Of --method stochastic: another seed, other noise")
+                    ->check(CLI::NonNegativeNumber)
+                    ->capture_default_str();
+  masksOption_ = verb.add_option("--masks", masks, "Of --method stochastic: naive flips a coin per sample")
+                     ->check(CLI::IsMember({"stratified", "naive"}))
+                     ->capture_default_str();
+  correctionOption_ = verb.add_option("--correction", correction,
+                                      "Of --method stochastic:depth: scale to the exact net opacity; off is unbiased")
+                          ->check(CLI::IsMember({"on", "off"}))
+                          ->capture_default_str();
+}
+
+std::optional<StochasticSettings> StochasticFlags::settings(const std::string& method, int passes) const {
+  const std::optional<Variant> variant = stochasticVariant(method);
+  if (!variant) {
+    for (const CLI::Option* option : {samplesOption_, seedOption_, masksOption_, correctionOption_})
+      if (option && option->count() > 0)
+        throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(), method,
+                                     kStochasticNames));
+    return std::nullopt;
+  }
+  StochasticSettings settings;
+  settings.variant = *variant;
+  if (correctionOption_ && correctionOption_->count() > 0 && *variant != Variant::depth)
+    throw UsageError(fmt::format("--correction: --method {} is {} corrected, expected stochastic:depth", method,
+                                 *variant == Variant::alpha ? "always" : "never"));
+  settings.corrected = correction == "on";
+  settings.stratified = masks == "stratified";
+  settings.seed = static_cast<std::uint32_t>(seed);
+  const bool given = samplesOption_ && samplesOption_->count() > 0;
+  settings.samples = given ? samples : (std::max(kDefaultSamples, passes) + passes - 1) / passes * passes;
+  if (settings.samples % passes != 0)
+    throw UsageError(
+        fmt::format("--samples: found {} with --aa {}, expected a multiple of --aa: every pass holds as many",
+                    settings.samples, passes));
+  return settings;
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,145 @@
+#include "engine_bridge/embree/shadow_rays.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine_bridge/embree/sampling.h"
+#include "engine_bridge/embree/surface_sampler.h"
+#include "engine_bridge/embree/transparent_scene.h"
+
+namespace pellucid {
+namespace {
+
+using namespace rays;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// A point known by a float depth is off by some units in its last place.
+constexpr double kLift = 8e-6;
+
+// The depth of a pixel and how it changes across it. 1/z is linear on a plane; of the two neighbours the one that
+// changes less lies on the same surface.
+struct DepthPlane {
+  double inverse = 0, across = 0, down = 0;
+  double z(glm::dvec2 offset) const { return 1.0 / (inverse + across * offset.x + down * offset.y); }
+};
+
+double slope(const Image<float>& viewZ, int x, int y, int dx, int dy) {
+  const double here = 1.0 / static_cast<double>(viewZ.at(x, y));
+  double best = 0, least = kInfinity;
+  for (const int side : {-1, 1}) {
+    const int u = x + side * dx, v = y + side * dy;
+    if (u < 0 || v < 0 || u >= viewZ.width() || v >= viewZ.height() || !std::isfinite(viewZ.at(u, v))) continue;
+    const double change = side * (1.0 / static_cast<double>(viewZ.at(u, v)) - here);
+    if (std::abs(change) < least) {
+      least = std::abs(change);
+      best = change;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+struct ShadowRays::Impl {
+  const Scene& scene;
+  Camera camera;
+  TransparentScene traced;
+  SurfaceSampler sampler;
+  std::vector<PunctualLight> lights;
+
+  Impl(const Scene& sceneGiven, const Camera& cameraGiven)
+      : scene(sceneGiven), camera(cameraGiven), traced(scene, camera), sampler(scene, TexelFilter::bilinear) {
+    for (const Light& light : scene.lights) lights.push_back(lightBlock(light, camera));
+  }
+  glm::vec3 density(const Crossing& crossing, const glm::vec3& toLight) const;
+  glm::vec3 visibility(std::size_t light, const glm::dvec3& point, std::vector<Crossing>& crossings) const;
+};
+
+glm::vec3 ShadowRays::Impl::density(const Crossing& crossing, const glm::vec3& toLight) const {
+  const Instance& instance = scene.instances[crossing.instance];
+  const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
+  const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+  const Placed& placed = traced.placed(crossing.instance);
+  const Attributes attributes = attributesAt(primitive, placed, crossing.triangle, crossing.hit);
+  const bool towardsLight = !crossing.hit.front;  // the ray looks from the receiver
+  const shading::Surface surface =
+      sampler.surfaceAt(primitive.material, attributes, placed.thicknessScale, towardsLight, RimKind::hard, 0.0f);
+  if (material.additive || !(surface.coverage > 0.0f)) return glm::vec3(0.0f);
+  const glm::vec3 normal = shading::normalTowardsEye(attributes.normal, towardsLight, toLight);
+  const float cosine = std::clamp(std::abs(glm::dot(normal, toLight)), shading::PLD_GRAZING, 1.0f);
+  const glm::vec3 t = shading::transmissionAt(surface, cosine);
+  return shading::shadowDensity(shading::opacityOf(surface.coverage, t), cosine, materialBlock(material).scattering.z);
+}
+
+glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& point,
+                                       std::vector<Crossing>& crossings) const {
+  const PunctualLight& block = lights[light];
+  const shading::Arriving arriving = shading::arrivingAt(block, glm::vec3(point));
+  if (arriving.irradiance == glm::vec3(0.0f)) return glm::vec3(1.0f);
+  const bool directional = block.direction.w == 0.0f;
+  const glm::dvec3 path = directional ? glm::dvec3(arriving.toLight) : glm::dvec3(glm::vec3(block.position)) - point;
+  const double metres = directional ? 1.0 : glm::length(path);
+  const glm::dvec3 size = glm::abs(point);
+  const double lift = kLift * std::max({size.x, size.y, size.z}) / metres;
+  crossings.clear();
+  traced.crossAny(point + lift * path, path, directional ? kInfinity : 1.0 - lift, crossings);
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
+  });
+  glm::dvec3 passed(1.0);
+  for (std::size_t begin = 0; begin < crossings.size();) {
+    std::size_t end = begin;
+    bool faced = false;
+    for (; end < crossings.size() && crossings[end].instance == crossings[begin].instance; ++end)
+      faced = faced || !crossings[end].hit.front;
+    const Instance& instance = scene.instances[crossings[begin].instance];
+    const Material& material = scene.materials[static_cast<std::size_t>(
+        scene.primitives[static_cast<std::size_t>(instance.primitive)].material)];
+    for (; begin < end; ++begin) {
+      const bool turned = crossings[begin].hit.front && faced && !material.doubleSided;
+      if (material.castsShadow && !turned)
+        passed *= glm::dvec3(1.0) - glm::dvec3(density(crossings[begin], arriving.toLight));
+    }
+  }
+  return glm::vec3(passed);
+}
+
+ShadowRays::ShadowRays(const Scene& scene, const Camera& camera) : impl_(new Impl(scene, camera)) {}
+ShadowRays::~ShadowRays() = default;
+
+glm::vec3 ShadowRays::visibility(std::size_t light, const glm::dvec3& point) const {
+  std::vector<Crossing> crossings;
+  return impl_->visibility(light, point, crossings);
+}
+
+Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffer, int samples) const {
+  const Image<float>& viewZ = gbuffer.viewZ;
+  Image<glm::vec3> result(viewZ.width(), viewZ.height(), glm::vec3(1.0f));
+  const CameraRays rays(impl_->camera, gbuffer.display);
+  tbb::parallel_for(0, viewZ.height(), [&](int y) {
+    std::vector<Crossing> crossings;
+    for (int x = 0; x < viewZ.width(); ++x) {
+      const float z = viewZ.at(x, y);
+      if (!std::isfinite(z)) continue;
+      const DepthPlane plane{1.0 / static_cast<double>(z), slope(viewZ, x, y, 1, 0), slope(viewZ, x, y, 0, 1)};
+      const glm::dvec2 centre(gbuffer.data.x0 + x + 0.5, gbuffer.data.y0 + y + 0.5);
+      glm::dvec3 sum(0.0);
+      for (int i = 0; i < samples; ++i) {
+        glm::dvec2 offset(0.0);
+        // One set of positions for all pixels: a straight edge then has one look along its length.
+        if (samples > 1) offset = glm::dvec2(samplePoint(static_cast<std::uint32_t>(i), 0)) - 0.5;
+        const double depth = plane.z(offset);
+        const Ray ray = rays.through(centre + (depth > 0.0 ? offset : glm::dvec2(0.0)));
+        const glm::dvec3 point = ray.origin + (depth > 0.0 ? depth : static_cast<double>(z)) * ray.direction;
+        sum += glm::dvec3(impl_->visibility(light, point, crossings));
+      }
+      result.at(x, y) = glm::vec3(sum / static_cast<double>(samples));
+    }
+  });
+  return result;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,181 @@
+// --shadows as a user meets it: a pane's shadow on a lit picture, with and without the light's own layer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "gbuffer/opaque_io.h"
+#include "tests/support/program.h"
+#include "tests/support/shots.h"
+
+namespace pellucid {
+namespace {
+
+using namespace test;
+
+// A wall 4 m away, lit by a sun from behind the camera, and a pane at 2 m of which the sun throws the shadow: shifted
+// to the right, so that part of it lies beside the pane.
+class Shadow : public ::testing::Test {
+ protected:
+  static constexpr int kSize = 64;
+  static constexpr int kColumn = 52, kRow = 32;  // inside the shadow, which covers columns 48 to 57, rows 24 to 39
+
+  void SetUp() override {
+    folder = freshFolder(std::string("shadow-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    options.folder = folder;
+    writeGlass("glass.glb", true);
+  }
+
+  void writeGlass(const std::string& name, bool lit) const {
+    const nlohmann::json glass{
+        {"name", "glass"},
+        {"doubleSided", true},
+        {"pbrMetallicRoughness", {{"baseColorFactor", {.9, .5, .1, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0}}},
+        {"extensions",
+         {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}, {"KHR_materials_ior", {{"ior", 1}}}}}};
+    GlbOptions shot;
+    if (lit) {
+      shot.nodes = {{{"name", "key"},
+                     {"rotation", {0, -std::sin(M_PI / 8), 0, std::cos(M_PI / 8)}},  // shines towards (1, 0, -1)
+                     {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+      shot.extra = {
+          {"extensions",
+           {{"KHR_lights_punctual", {{"lights", {{{"type", "directional"}, {"name", "key"}, {"intensity", 683}}}}}}}}};
+    }
+    shot.extra["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_transmission", "KHR_materials_ior"};
+    writeGlb(folder + "/" + name, {Quad{{-1, -.5f, -2}, {.6f, 0, 0}, {0, 1, 0}, glass}}, shot);
+  }
+  Image<float> plane(float value) const { return Image<float>(kSize, kSize, value); }
+  void writeShot(bool withLayer) const {
+    std::vector<ExtraLayer> layers{
+        {"", {{"R", plane(.6f)}, {"G", plane(.5f)}, {"B", plane(.4f)}, {"A", plane(1)}, {"Z", plane(4)}}}};
+    if (withLayer) layers.push_back({"light.key", {{"R", plane(.5f)}, {"G", plane(.4f)}, {"B", plane(.3f)}}});
+    writeLayers(folder + "/shot.exr", {0, 0, kSize, kSize}, {0, 0, kSize, kSize}, layers);
+  }
+  Ended run(const std::vector<std::string>& extra, const std::string& scene = "glass.glb") const {
+    std::vector<std::string> arguments{"composite", "shot.exr", scene,           "-o",   "out.exr",
+                                       "--aa",      "1",        "--environment", "0,0,0"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return runProgram(arguments, options);
+  }
+  OpaqueFile out() const { return readOpaque(folder + "/out.exr", {}); }
+  static float channel(const OpaqueFile& file, const std::string& name, int x, int y) {
+    const ExrChannel* found = file.document.parts[0].find(name);
+    EXPECT_NE(found, nullptr) << name;
+    return found ? found->at(static_cast<std::size_t>(y * kSize + x)) : -1.0f;
+  }
+  static bool beside(int x, int y) {  // neither pane nor shadow, nor their edges
+    return (x > 20 && x < 47) || x > 58 || y < 14 || y > 49;
+  }
+
+  std::string folder;
+  RunOptions options;
+};
+
+TEST_F(Shadow, DimsTheLightsOwnLayer) {
+  writeShot(true);
+  const Ended ended = run({"--shadows", "exact"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const OpaqueFile file = out();
+  const glm::vec4 dimmed = file.gbuffer.beauty.at(kColumn, kRow);
+  EXPECT_NEAR(dimmed.r, .6f - .1f * .5f, 1e-6);  // the pane lets (.9, .5, .1) through
+  EXPECT_NEAR(dimmed.g, .5f - .5f * .4f, 1e-6);
+  EXPECT_NEAR(dimmed.b, .4f - .9f * .3f, 1e-6);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      if (beside(x, y)) {
+        ASSERT_EQ(file.gbuffer.beauty.at(x, y), glm::vec4(.6f, .5f, .4f, 1.0f)) << x << "," << y;
+      }
+      ASSERT_EQ(channel(file, "light.key.R", x, y), .5f);
+    }
+}
+
+TEST_F(Shadow, NamedLayerOfAnotherName) {
+  writeShot(true);
+  ASSERT_EQ(run({"--shadows", "exact"}).code, 0);
+  const glm::vec4 found = out().gbuffer.beauty.at(kColumn, kRow);
+  ASSERT_EQ(run({"--shadows", "exact", "--light", "key=light.key"}).code, 0);
+  EXPECT_EQ(out().gbuffer.beauty.at(kColumn, kRow), found);
+}
+
+TEST_F(Shadow, WithoutLayersItIsALayerAndAppliedOnRequest) {
+  writeShot(false);
+  const Ended written = run({"--shadows", "exact"});
+  ASSERT_EQ(written.code, 0) << written.err;
+  EXPECT_NE(written.err.find("not applied"), std::string::npos) << written.err;
+  OpaqueFile file = out();
+  EXPECT_EQ(file.gbuffer.beauty.at(kColumn, kRow), glm::vec4(.6f, .5f, .4f, 1.0f));
+  EXPECT_NEAR(channel(file, "shadow.R", kColumn, kRow), .9f, 1e-6);
+  EXPECT_NEAR(channel(file, "shadow.B", kColumn, kRow), .1f, 1e-6);
+  EXPECT_EQ(channel(file, "shadow.B", 30, 30), 1.0f);
+  ASSERT_EQ(run({"--shadows", "exact", "--apply-shadows"}).code, 0);
+  file = out();
+  EXPECT_NEAR(file.gbuffer.beauty.at(kColumn, kRow).b, .04f, 1e-6);
+  EXPECT_EQ(file.gbuffer.beauty.at(30, 30), glm::vec4(.6f, .5f, .4f, 1.0f));
+}
+
+TEST_F(Shadow, MistakesAreOneSentence) {
+  writeShot(true);
+  writeGlass("dark.glb", false);
+  const auto expect = [&](const std::vector<std::string>& extra, int code, const std::string& says,
+                          const std::string& scene = "glass.glb") {
+    const Ended ended = run(extra, scene);
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_NE(ended.err.find(says), std::string::npos) << ended.err;
+  };
+  expect({"--light", "key=light.key"}, 2, "--light: found it without --shadows");
+  expect({"--apply-shadows"}, 2, "--apply-shadows: found it without --shadows");
+  expect({"--shadows", "exact", "--light", "key"}, 2, "expected GLTFNAME=LAYER");
+  expect({"--shadows", "soft"}, 2, "soft");
+  expect({"--shadows", "exact", "--apply-shadows"}, 2, "found layers of single lights");
+  expect({"--shadows", "exact", "--light", "lamp=light.key"}, 4, "no light 'lamp'");
+  expect({"--shadows", "exact", "--light", "key=light.rim"}, 4, "no such layer");
+  expect({"--shadows", "exact"}, 4, "no punctual light", "dark.glb");
+  EXPECT_EQ(filesIn(folder), (std::vector<std::string>{"dark.glb", "glass.glb", "shot.exr"}));
+}
+
+// Sun shadows of glass, smoke and leaves on Cycles' opaque render, through its light group.
+TEST_F(Shadow, BlenderSceneComesNearerToThePathTracedTruth) {
+  if (assets().empty()) GTEST_SKIP() << "no ../shared/assets";
+  const std::string blender = assets() + "/blender/";
+  const auto composite = [&](const std::vector<std::string>& extra) {
+    std::vector<std::string> arguments{"composite",
+                                       blender + "gbuffer.exr",
+                                       blender + "transparent_lit.glb",
+                                       "-o",
+                                       "out.exr",
+                                       "--preset",
+                                       "blender",
+                                       "--aa",
+                                       "1"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const Ended ended = runProgram(arguments, options);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    ReadOptions read;
+    read.preset = "blender";
+    return readOpaque(folder + "/out.exr", read).gbuffer.beauty;
+  };
+  const Image<glm::vec4> plain = composite({});
+  const Image<glm::vec4> shadowed = composite({"--shadows", "exact", "--light", "key=Combined_key"});
+  // The truth is a picture alone; its colours are all that is read.
+  const ExrDocument truth = readExr(blender + "gt_lit.exr");
+  const ExrPart& part = truth.parts[0];
+  double before = 0, after = 0;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const double wanted = static_cast<double>(part.find(std::string(1, "RGB"[c]))->at(i));
+      before += std::abs(static_cast<double>(plain[i][c]) - wanted);
+      after += std::abs(static_cast<double>(shadowed[i][c]) - wanted);
+    }
+    changed += plain[i] != shadowed[i] ? 1 : 0;
+  }
+  const double values = 3.0 * static_cast<double>(plain.size());
+  std::printf("mean error to gt_lit: %.4f without shadows, %.4f with; %.1f%% of the pixels changed\n", before / values,
+              after / values, 100.0 * static_cast<double>(changed) / static_cast<double>(plain.size()));
+  EXPECT_LT(after, .9 * before);
+  EXPECT_LT(changed, plain.size() / 2);  // the sky and the open floor keep their bits
+}
+
+}  // namespace
+}  // namespace pellucid
