@@ -11,6 +11,7 @@
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shadow_flags.h"
 #include "composite/cli/shot.h"
+#include "composite/cli/stochastic_flags.h"
 #include "composite/cli/systems.h"
 #include "composite/cli/verbs.h"
 #include "composite/error.h"
@@ -34,6 +35,7 @@ struct CompositeFlags {
   FoliageFlags foliage;
   RunFlags run;
   ShadowFlags shadow;
+  StochasticFlags stochastic;
   int samples = kDefaultSamples;
   std::optional<double> tolerance;
   bool measure = false;
@@ -44,6 +46,10 @@ void composite(const CompositeFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
   flags.shadow.check();
+  RenderSettings settings;
+  settings.listMethod = flags.method.listMethod();
+  settings.stochastic = flags.stochastic.settings(flags.method.method, flags.samples);
+  settings.lookup = flags.lookup.settings();
   const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
@@ -57,10 +63,10 @@ void composite(const CompositeFlags& flags) {
         "--systems: expected glTF alone on a flat picture, by a blended method in float: the truth, a tolerance and "
         "deep "
         "files have no use for passes per system");
-  RenderSettings settings;
+  if (settings.stochastic && (shot->deepOpaque || flags.systems != "off"))
+    throw UsageError("--method stochastic: found a deep picture or --systems, expected a flat picture and one pass");
   settings.samples = flags.samples;
   settings.sortedTruth = flags.method.isOver();
-  settings.listMethod = flags.method.listMethod();
   settings.tolerance = flags.tolerance;
   settings.exactSums = flags.method.isExact();
   settings.deepOpaque = shot->deepOpaque.get();
@@ -71,7 +77,6 @@ void composite(const CompositeFlags& flags) {
   flags.scene.applyTo(settings.pass);
   flags.method.applyTo(settings.pass, shot->camera);
   flags.scatter.applyTo(settings.pass);
-  settings.lookup = flags.lookup.settings();
 
   const ShadowResult shadows = stages.time("shadows", [&] { return castShadows(flags.shadow, *shot, flags.samples); });
   std::unique_ptr<GlContext> context;
@@ -161,6 +166,7 @@ void addComposite(CLI::App& app) {
   flags->lookup.addTo(*verb);
   flags->foliage.addTo(*verb);
   flags->shadow.addTo(*verb);
+  flags->stochastic.addTo(*verb);
   flags->run.addTo(*verb);
   verb->add_option("--aa", flags->samples, "Jittered passes, averaged; 1 samples pixel centres")
       ->check(CLI::Range(1, 4096))

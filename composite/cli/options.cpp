@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "composite/cli/stochastic_flags.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -148,10 +149,13 @@ void SceneFlags::applyTo(PassSettings& settings) const {
 }
 
 void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
-  const std::string names = listsToo ? "phenomenological, over, " + methodNames() : "phenomenological";
+  const std::string names =
+      listsToo ? fmt::format("phenomenological, over, {}, {}", kStochasticNames, methodNames()) : "phenomenological";
   verb.add_option("--method", method, names)
       ->check([listsToo, names](const std::string& text) -> std::string {
-        if (text == "phenomenological" || (listsToo && (text == "over" || chooseMethod(text)))) return "";
+        if (text == "phenomenological" ||
+            (listsToo && (text == "over" || stochasticVariant(text) || chooseMethod(text))))
+          return "";
         return fmt::format("--method: found '{}', expected {}", text, names);
       })
       ->capture_default_str();
@@ -180,11 +184,15 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
 
 std::optional<ChosenMethod> MethodFlags::listMethod() const {
   const std::optional<ChosenMethod> chosen = chooseMethod(method);
-  if (chosen && precision != "float")
+  if ((chosen || stochasticVariant(method)) && precision != "float")
     throw UsageError(fmt::format("--precision: found {} with --method {}, expected phenomenological{}", precision,
                                  method, isExact() ? " or over" : ""));
   if (isPublished() && isOver())
     throw UsageError("--precision: found published with --method over, expected phenomenological");
+  if (stochasticVariant(method))
+    for (const CLI::Option* option : {weightOption, normalisationOption})
+      if (option && option->count() > 0)
+        throw UsageError(fmt::format("{}: --method {} does not weigh its layers", option->get_name(), method));
   if (!chosen) return chosen;
   if (!chosen->method->weighs && weightOption && weightOption->count() > 0)
     throw UsageError(fmt::format("--weight: --method {} does not weigh its layers", method));

@@ -21,9 +21,17 @@ namespace {
 class ListPainter {
  public:
   ListPainter(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,
-              const PassSettings& sample, const GBuffer& gbuffer, RenderCounts& counts)
-      : pass_(pass), deep_(deep), settings_(settings), sample_(sample), gbuffer_(gbuffer), counts_(counts) {
-    sums_ = !settings.sortedTruth && !settings.tolerance && !settings.listMethod && !settings.deepOpaque;
+              const PassSettings& sample, const GBuffer& gbuffer, RenderCounts& counts, StochasticMean* stochastic,
+              int index)
+      : pass_(pass),
+        deep_(deep),
+        settings_(settings),
+        sample_(sample),
+        gbuffer_(gbuffer),
+        counts_(counts),
+        stochastic_(stochastic),
+        index_(index) {
+    sums_ = !settings.sortedTruth && !settings.tolerance && !settings.listMethod && !stochastic && !settings.deepOpaque;
     const bool deepScatters =
         std::any_of(deep.begin(), deep.end(), [](const auto& source) { return source->mayScatter(); });
     scatters_ = !sums_ && (deepScatters || (pass && pass->scatters(sample)));
@@ -93,6 +101,8 @@ class ListPainter {
     const MethodChoice choice{0, sample_.weight, sample_.normalisation};
     if (settings_.tolerance) {
       compositeWithin(lists, choice, data, background, scatter, *settings_.tolerance, veil, counts_.tolerance);
+    } else if (stochastic_) {
+      stochastic_->add(index_, lists, data, veil);
     } else if (settings_.sortedTruth) {
       compositeSorted(lists, data, veil);
     } else if (settings_.listMethod) {
@@ -123,6 +133,8 @@ class ListPainter {
   const PassSettings& sample_;
   const GBuffer& gbuffer_;
   RenderCounts& counts_;
+  StochasticMean* stochastic_;  // null for other methods
+  int index_;                   // of this pass
   bool sums_, scatters_;
   OitPlanes planes_;           // the sums, or what scatters
   Image<glm::vec3> lookedUp_;  // with a deep picture behind
@@ -152,6 +164,9 @@ void addStatistics(const PassStatistics& statistics, RenderCounts& counts) {
 Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,
                 const GBuffer& gbuffer, Stages& stages, RenderCounts& counts) {
   VeilMean mean;
+  std::optional<StochasticMean> stochastic;
+  if (settings.stochastic && !settings.sortedTruth)
+    stochastic.emplace(gbuffer.data.width(), gbuffer.data.height(), *settings.stochastic, settings.samples);
   for (int i = 0; i < settings.samples; ++i) {
     PassSettings sample = settings.pass;
     sample.sample = samplePosition(i, settings.samples);
@@ -160,10 +175,12 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
         return veilFromSystems(*pass, *settings.systems, settings, sample, gbuffer, counts);
       });
       stages.time("average", [&] { mean.add(veil); });
-    } else if (settings.sortedTruth || settings.listMethod || settings.tolerance || settings.exactSums ||
+    } else if (settings.sortedTruth || settings.listMethod || stochastic || settings.tolerance || settings.exactSums ||
                settings.deepOpaque || !deep.empty() || !pass) {
-      const Veil veil = stages.time(settings.sortedTruth ? "lists and sort" : "lists and method",
-                                    [&] { return ListPainter(pass, deep, settings, sample, gbuffer, counts).paint(); });
+      const Veil veil = stages.time(settings.sortedTruth ? "lists and sort" : "lists and method", [&] {
+        return ListPainter(pass, deep, settings, sample, gbuffer, counts, stochastic ? &*stochastic : nullptr, i)
+            .paint();
+      });
       stages.time("average", [&] { mean.add(veil); });
     } else {
       OitPlanes planes = stages.time("transparent pass", [&] { return pass->accumulate(sample); });
@@ -176,7 +193,11 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
     addStatistics(pass->statistics(), counts);
     if (settings.systems) counts.passes = systemPasses;
   }
-  return stages.time("average", [&] { return mean.finish(); });
+  return stages.time("average", [&] {
+    Veil veil = mean.finish();
+    if (stochastic) stochastic->finish(veil);
+    return veil;
+  });
 }
 
 void fitShotWeight(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const GBuffer& gbuffer,

@@ -2,7 +2,7 @@
 #pragma once
 #include "composite/cli/messages.h"
 #include "composite/cli/shot.h"
-#include "composite/methods/method.h"
+#include "composite/methods/stochastic.h"
 #include "composite/resolve.h"
 #include "composite/tolerance.h"
 
@@ -14,13 +14,14 @@ struct RenderSettings {
   PassSettings pass;
   ResolveSettings resolve;
   LookupSettings lookup;
-  bool exactSums = false;                      // --precision exact
-  bool sortedTruth = false;                    // `over`
-  int samples = 1;                             // --aa
-  std::optional<ChosenMethod> listMethod;      // a method that works from fragment lists; nothing: the GL pass's sums
-  const DeepOpaque* deepOpaque = nullptr;      // the picture, when it is deep
-  std::vector<SystemPass>* systems = nullptr;  // each its own pass, farthest first
-  std::optional<double> tolerance;             // certify the sums, composite exactly what they cannot
+  bool exactSums = false;                        // --precision exact
+  bool sortedTruth = false;                      // `over`
+  int samples = 1;                               // --aa
+  std::optional<ChosenMethod> listMethod;        // a method that works from fragment lists; nothing: the GL pass's sums
+  const DeepOpaque* deepOpaque = nullptr;        // the picture, when it is deep
+  std::vector<SystemPass>* systems = nullptr;    // each its own pass, farthest first
+  std::optional<StochasticSettings> stochastic;  // from lists too; its samples are spread over all the passes
+  std::optional<double> tolerance;               // certify the sums, composite exactly what they cannot
 };
 
 struct RenderCounts {

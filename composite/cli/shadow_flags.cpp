@@ -113,6 +113,9 @@ void ShadowFlags::check() const {
 ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples) {
   ShadowResult result;
   if (!flags.on()) return result;
+  if (shot.deepOpaque)
+    throw UsageError(
+        "--shadows: found a deep picture, expected a flat one: its samples have no layers of single lights");
   const std::string& path = shot.opaque.document.path;
   std::map<std::string, std::string> wanted;
   for (const std::string& text : flags.lights) wanted.insert(nameAndLayer(text));

@@ -10,6 +10,7 @@
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
+#include "composite/cli/stochastic_flags.h"
 #include "composite/cli/verbs.h"
 #include "composite/compare/page.h"
 #include "composite/study/flip.h"
@@ -80,6 +81,7 @@ nlohmann::json jsonOf(const std::vector<StudyRow>& rows) {
 struct Candidate {
   std::string name;
   std::optional<ChosenMethod> chosen;
+  std::optional<StochasticSettings> stochastic;
   bool sorted = false;
   std::string precision;
   int samples = 1;
@@ -89,16 +91,20 @@ struct Candidate {
 std::vector<Candidate> candidatesOf(const StudyFlags& flags) {
   std::vector<Candidate> candidates;
   for (const int samples : flags.samples) {
-    candidates.push_back({"over", std::nullopt, true, "double", samples});
+    candidates.push_back({"over", std::nullopt, std::nullopt, true, "double", samples});
     for (const std::string& name : flags.methods) {
       const std::optional<ChosenMethod> chosen = chooseMethod(name);
-      if (!chosen && name != "phenomenological")
-        throw UsageError(fmt::format("--methods: found '{}', expected phenomenological, {}", name, methodNames()));
-      if (chosen)
-        candidates.push_back({chosen->name, chosen, false, chosen->method->precision, samples});
+      const std::optional<StochasticSettings> stochastic = StochasticFlags().settings(name, samples);
+      if (!chosen && !stochastic && name != "phenomenological")
+        throw UsageError(fmt::format("--methods: found '{}', expected phenomenological, {}, {}", name, kStochasticNames,
+                                     methodNames()));
+      if (stochastic)
+        candidates.push_back({name, std::nullopt, stochastic, false, "double", samples});
+      else if (chosen)
+        candidates.push_back({chosen->name, chosen, std::nullopt, false, chosen->method->precision, samples});
       else
         for (const std::string& precision : flags.precisions)
-          candidates.push_back({name, std::nullopt, false, precision, samples});
+          candidates.push_back({name, std::nullopt, std::nullopt, false, precision, samples});
     }
   }
   return candidates;
@@ -110,7 +116,10 @@ void describe(StudyRow& row, const Candidate& candidate, const RenderCounts& cou
   row.method = candidate.name;
   row.precision = candidate.precision;
   row.samples = candidate.samples;
-  if (candidate.chosen) {
+  if (candidate.stochastic) {
+    row.bits = stochasticBits(*candidate.stochastic);
+    row.passes = stochasticPasses(*candidate.stochastic);
+  } else if (candidate.chosen) {
     row.bits = candidate.chosen->method->bits(candidate.chosen->order);
     row.passes = candidate.chosen->method->passes;
   } else if (candidate.sorted || candidate.precision == "exact") {
@@ -177,6 +186,7 @@ void study(const StudyFlags& flags) {
     how.samples = candidate.samples;
     how.sortedTruth = candidate.sorted;
     how.listMethod = candidate.chosen;
+    how.stochastic = candidate.stochastic;
     how.exactSums = candidate.precision == "exact";
     return how;
   };
@@ -237,7 +247,8 @@ void addStudy(CLI::App& app) {
   verb->add_option("opaque", flags->opaque, "EXR with beauty and depth")->required();
   verb->add_option("scenes", flags->scenes, "glTF, GLB or deep EXR with the transparent things")->required();
   verb->add_option("-o,--output", flags->folder, "Folder for study.txt, .csv, .json, .svg, .png and .html")->required();
-  verb->add_option("--methods", flags->methods, "Methods to compare: " + methodNames())
+  verb->add_option("--methods", flags->methods,
+                   fmt::format("Methods to compare: phenomenological, {}, {}", kStochasticNames, methodNames()))
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();

@@ -75,6 +75,19 @@ class Winners {
 
 }  // namespace
 
+int stochasticBits(const StochasticSettings& settings) {
+  // basic and alpha keep the winners' colour beside their depth; depth sums light and opacity.
+  const int sample = settings.variant == Variant::depth ? 3 : 6;
+  return 32 * (settings.samples * sample + 12);
+}
+
+int stochasticPasses(const StochasticSettings& settings) {
+  // ST10 section 3.5: net opacity, masks, and the sum of what they let through.
+  const bool corrected =
+      settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
+  return 1 + (corrected ? 1 : 0) + (settings.variant == Variant::depth ? 1 : 0);
+}
+
 MaskTable::MaskTable(int samples) : samples_(static_cast<std::uint32_t>(samples)), ranks_(kRows * samples_) {
   for (std::uint32_t row = 0; row < kRows; ++row) {
     const auto begin = ranks_.begin() + static_cast<std::ptrdiff_t>(row * samples_);

@@ -23,6 +23,10 @@ struct StochasticSettings {
   static constexpr int kMostSamples = 4096;
 };
 
+// Of sums a pixel, as a rasteriser keeps them: a depth per sample and channel, and the planes that are divided.
+int stochasticBits(const StochasticSettings& settings);
+int stochasticPasses(const StochasticSettings& settings);  // of geometry
+
 // Random orders of S samples. A mask is a run of R ranks of one of them, so masks of different R nest.
 class MaskTable {
  public:

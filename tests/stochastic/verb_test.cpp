@@ -1,0 +1,93 @@
+// --method stochastic as a user meets it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/exr_shots.h"
+#include "tests/support/program.h"
+#include "tests/support/shots.h"
+
+namespace pellucid {
+namespace {
+
+using namespace test;
+
+class StochasticVerb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = freshFolder(std::string("stochastic-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    options.folder = folder;
+    OpaqueShot shot;
+    shot.width = shot.height = 32;
+    writeOpaque(folder + "/opaque.exr", shot);
+    writeGlb(folder + "/glass.glb", {Quad{{-1, -1, -4}, {2, 0, 1}, {0, 2, 0}, unlit(.9f, .2f, .1f, .5f)},
+                                     Quad{{-1, -1, -3}, {2, 0, -1}, {0, 2, 0}, unlit(.1f, .8f, .3f, .3f)},
+                                     Quad{{-.5f, -.2f, -2}, {.6f, 0, 0}, {0, .7f, 0}, unlit(.2f, .2f, 1, 1)}});
+  }
+  Image<glm::vec4> composite(const std::vector<std::string>& extra) {
+    std::vector<std::string> arguments{"composite", "opaque.exr", "glass.glb", "-o", "out.exr"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const Ended ended = runProgram(arguments, options);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return readOpaque(folder + "/out.exr", {}).gbuffer.beauty;
+  }
+  void refused(const std::vector<std::string>& extra, const std::string& says) {
+    std::vector<std::string> arguments{"composite", "opaque.exr", "glass.glb", "-o", "refused.exr"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const Ended ended = runProgram(arguments, options);
+    EXPECT_EQ(ended.code, 2) << ended.err;
+    EXPECT_NE(ended.err.find(says), std::string::npos) << ended.err;
+  }
+  static double meanError(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      for (int c = 0; c < 3; ++c) sum += std::abs(static_cast<double>(a[i][c]) - static_cast<double>(b[i][c]));
+    return sum / (3.0 * static_cast<double>(a.size()));
+  }
+  std::string folder;
+  RunOptions options;
+};
+
+TEST_F(StochasticVerb, SameSeedSameBitsWhateverTheOrderChunksAndThreads) {
+  const auto one = composite({"--method", "stochastic", "--aa", "4", "--seed", "7"});
+  const auto other = composite({"--method", "stochastic", "--aa", "4", "--seed", "7", "--order", "shuffle:3",
+                                "--budget", "64K", "--threads", "1"});
+  const auto noise = composite({"--method", "stochastic", "--aa", "4", "--seed", "8"});
+  for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one[i], other[i]) << i;
+  EXPECT_GT(meanError(one, noise), 1e-4);
+}
+
+TEST_F(StochasticVerb, EveryVariantTendsToTheTruth) {
+  const auto truth = composite({"--method", "over", "--aa", "4"});
+  for (const std::vector<std::string>& how : {std::vector<std::string>{"stochastic:basic"},
+                                              {"stochastic:alpha"},
+                                              {"stochastic:depth"},
+                                              {"stochastic:depth", "--correction", "off"},
+                                              {"stochastic:basic", "--masks", "naive"}}) {
+    std::vector<std::string> arguments{"--aa", "4", "--method"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    std::vector<std::string> few = arguments, many = arguments;
+    few.insert(few.end(), {"--samples", "16"});
+    many.insert(many.end(), {"--samples", "1024"});
+    const double coarse = meanError(composite(few), truth), fine = meanError(composite(many), truth);
+    std::printf("%s %s: mean error %.4f at 16 samples, %.4f at 1024\n", how[0].c_str(), how.back().c_str(), coarse,
+                fine);
+    EXPECT_LT(fine, .35 * coarse) << how[0];  // 64 times the samples: an eighth where naive
+  }
+}
+
+TEST_F(StochasticVerb, FlagsThatItCannotHonourAreErrors) {
+  refused({"--method", "stochastic", "--samples", "9", "--aa", "4"}, "multiple of --aa");
+  refused({"--method", "stochastic:basic", "--correction", "on"}, "never corrected");
+  refused({"--method", "stochastic:alpha", "--correction", "off"}, "always corrected");
+  refused({"--method", "stochastic:fancy"}, "stochastic[:basic|alpha|depth]");
+  refused({"--method", "over", "--seed", "3"}, "draws no random numbers");
+  refused({"--samples", "8"}, "draws no random numbers");
+  refused({"--method", "stochastic", "--weight", "eq7"}, "does not weigh");
+  refused({"--method", "stochastic", "--precision", "exact"}, "--precision");
+  refused({"--method", "stochastic", "--tolerance", ".01"}, "no certificate");
+}
+
+}  // namespace
+}  // namespace pellucid
