@@ -54,6 +54,9 @@ void foldScatterPixel(const FragmentLists& lists, std::size_t pixel, const glm::
     refraction += added.refraction;
     refractionZ += added.refractionZ;
     diffuseZ = added.diffuseZ < diffuseZ ? added.diffuseZ : diffuseZ;
+    if (lists.disperses())
+      planes.dispersion.at(px, py) +=
+          shading::packDispersion(layerFrom(fragment), scatterFrom(fragment), lists.dispersion[i]);
   }
   planes.refraction.at(px, py) = refraction;
   planes.light.at(px, py).a = refractionZ;
@@ -66,6 +69,7 @@ void foldScattering(const FragmentLists& lists, OitPlanes& planes) {
   copySolids(lists, planes);
   if (!anyScatters(lists)) return;
   addScatterPlanes(planes);
+  if (lists.disperses()) addDispersionPlane(planes);
   const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;

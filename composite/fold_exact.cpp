@@ -15,8 +15,8 @@
 namespace pellucid {
 namespace {
 
-// The planes of a pixel as one row of numbers,.
-constexpr std::size_t kSums = 6 * 4;
+// The planes of a pixel as one row of numbers.
+constexpr std::size_t kSums = 7 * 4;
 using Sums = std::array<long double, kSums>;
 
 void add(Sums& sums, std::size_t plane, const glm::vec4& term) {
@@ -29,9 +29,22 @@ glm::vec4 rounded(const Sums& sums, std::size_t plane) {
   return result;
 }
 
-bool before(const Fragment* a, const Fragment* b) {
-  return std::memcmp(a, b, sizeof(Fragment)) < 0;
-}
+// Orders fragments of one list by all their bits.
+class Before {
+ public:
+  explicit Before(const FragmentLists& lists) : lists_(lists) {}
+  bool operator()(const Fragment* a, const Fragment* b) const {
+    const int order = std::memcmp(a, b, sizeof(Fragment));
+    if (order != 0 || !lists_.disperses()) return order < 0;
+    return std::memcmp(&dispersionOf(a), &dispersionOf(b), sizeof(glm::vec4)) < 0;
+  }
+  const glm::vec4& dispersionOf(const Fragment* fragment) const {
+    return lists_.dispersion[static_cast<std::size_t>(fragment - lists_.fragments.data())];
+  }
+
+ private:
+  const FragmentLists& lists_;
+};
 
 }  // namespace
 
@@ -40,6 +53,8 @@ void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight
   copySolids(lists, planes);
   const bool scatters = anyScatters(lists);
   if (scatters) addScatterPlanes(planes);
+  if (lists.disperses()) addDispersionPlane(planes);
+  const Before before(lists);
   const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;
@@ -69,6 +84,8 @@ void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight
           add(sums, 4, glm::vec4(0.0f, 0.0f, 0.0f, bent.refractionZ));
           add(sums, 5, bent.refraction);
           diffuse = std::min(diffuse, bent.diffuseZ);
+          if (lists.disperses())
+            add(sums, 6, shading::packDispersion(layer, scatterFrom(*fragment), before.dispersionOf(fragment)));
         }
         const int px = left + x, py = top + y;
         planes.radiance.at(px, py) = rounded(sums, 0);
@@ -80,6 +97,7 @@ void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight
         if (!scatters) continue;
         planes.refraction.at(px, py) = rounded(sums, 5);
         planes.diffuseZ.at(px, py) = diffuse;
+        if (lists.disperses()) planes.dispersion.at(px, py) = rounded(sums, 6);
       }
   });
 }

@@ -27,14 +27,6 @@ inline bool scattersAt(const OitPlanes& planes, int x, int y) {
   return planes.scatters() && (planes.refraction.at(x, y).z > 0.0f || planes.refraction.at(x, y).w > 0.0f);
 }
 
-class SpreadPyramid;
-
-// The sum of a gather. Nothing passed when weight is 0.
-struct Gathered {
-  glm::dvec4 colour{0.0};
-  double weight = 0.0;
-};
-
 // Looks the backdrop up along a pixel's path. Taps outside the data window read its edge; taps that are not finite or
 // stand in front of the scattering layer count nothing. A pixel that neither refracts nor diffuses gives its own bits.
 class Lookups {
@@ -47,16 +39,8 @@ class Lookups {
   glm::vec4 at(int x, int y) const;
 
  private:
-  shading::Path pathAt(int x, int y) const;
-  Gathered bilinear(glm::vec2 position, float nearestZ) const;
-  Gathered gaussian(glm::vec2 centre, float variance, float scattererZ) const;
-  Gathered disc(glm::vec2 centre, float variance, float scattererZ) const;
-
-  const Backdrop& backdrop_;
-  const OitPlanes& planes_;
-  LookupSettings settings_;
-  float largestSpread_;  // the data window's diagonal, pixels
-  std::unique_ptr<SpreadPyramid> pyramid_;
+  struct Text;
+  std::unique_ptr<Text> text_;
 };
 
 }  // namespace pellucid

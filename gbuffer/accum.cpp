@@ -68,6 +68,12 @@ void addScatterPlanes(OitPlanes& planes) {
   planes.diffuseZ = Image<float>(width, height, kNothing);
 }
 
+void addDispersionPlane(OitPlanes& planes) {
+  addScatterPlanes(planes);
+  if (!planes.disperses())
+    planes.dispersion = Image<glm::vec4>(planes.data.width(), planes.data.height(), glm::vec4(0.0f));
+}
+
 void mergePlanes(OitPlanes& a, const OitPlanes& b) {
   expectSame("display window", windowText(b.display), windowText(a.display));
   expectSame("data window", windowText(b.data), windowText(a.data));
@@ -92,6 +98,10 @@ void mergePlanes(OitPlanes& a, const OitPlanes& b) {
     if (a.published())  // offsets are summed there, and their weight only says whether there is one
       for (std::size_t i = 0; i < a.refraction.size(); ++i) a.refraction[i].z = std::min(a.refraction[i].z, 1.0f);
     for (std::size_t i = 0; i < a.diffuseZ.size(); ++i) a.diffuseZ[i] = std::min(a.diffuseZ[i], b.diffuseZ[i]);
+  }
+  if (b.disperses()) {
+    addDispersionPlane(a);
+    add(a.dispersion, b.dispersion);
   }
   for (std::size_t i = 0; i < a.frontZ.size(); ++i) a.frontZ[i] = std::min(a.frontZ[i], b.frontZ[i]);
   for (std::size_t i = 0; i < a.solid.size(); ++i)

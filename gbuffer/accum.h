@@ -34,9 +34,12 @@ struct OitPlanes {
   // Empty when no layer of the scene refracts or diffuses.
   Image<glm::vec4> refraction;  // sums of W delta.x, W delta.y, W (float pixels, y down) and of s^2 (pixels^2): D^2
   Image<float> diffuseZ;        // nearest diffusing layer, planar metres, +inf for none
+  // Empty when no refracting layer disperses. Sums of W times delta of red, then of blue, minus delta; float pixels.
+  Image<glm::vec4> dispersion;
 
   bool scatters() const { return !refraction.empty(); }
   bool published() const { return info.tier == "published"; }
+  bool disperses() const { return !dispersion.empty(); }
 
   shading::OitTargets at(int x, int y) const {
     shading::OitTargets targets;
@@ -58,6 +61,8 @@ OitPlanes emptyPlanes(const Window& display, const Window& data);
 OitPlanes emptyPublishedPlanes(const Window& display, const Window& data);
 // Gives planes that lack them those of refraction and diffusion, in which nothing scatters.
 void addScatterPlanes(OitPlanes& planes);
+// The same with that of dispersion; scatter planes included.
+void addDispersionPlane(OitPlanes& planes);
 // Adds b to a (nearest solid wins only when both are the same: solidHash). Throws MeaningError when they do not match.
 void mergePlanes(OitPlanes& a, const OitPlanes& b);
 

@@ -25,7 +25,11 @@ struct FragmentLists {
   Window window;                       // in display coordinates
   std::vector<std::uint64_t> offsets;  // size width * height + 1: pixel i owns [offsets[i], offsets[i + 1])
   std::vector<Fragment> fragments;
+  // Empty unless a layer disperses, else one per fragment: refraction delta of red minus `offset`, of blue minus it.
+  std::vector<glm::vec4> dispersion;
   Image<glm::vec4> solid;  // nearest fragment that hides everything: rgb, planar z (+inf: none)
+
+  bool disperses() const { return !dispersion.empty(); }
 };
 
 }  // namespace pellucid

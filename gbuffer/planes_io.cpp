@@ -74,6 +74,11 @@ PlaneSet scatterOf(bool published) {
   if (published) return {{std::begin(kPublishedScatterPlanes), std::end(kPublishedScatterPlanes)}};
   return {{std::begin(kScatterPlanes), std::end(kScatterPlanes)}, kDiffuseZ, &OitPlanes::diffuseZ};
 }
+// Only in files of scenes that disperse; all of them or none.
+constexpr VectorPlane kDispersionPlanes[] = {
+    {"oit.dispersion.RX", &OitPlanes::dispersion, 0, true}, {"oit.dispersion.RY", &OitPlanes::dispersion, 1, true},
+    {"oit.dispersion.BX", &OitPlanes::dispersion, 2, true}, {"oit.dispersion.BY", &OitPlanes::dispersion, 3, true},
+};
 
 // Numbers as text that reads back to the same bits.
 class NumberText {
@@ -206,6 +211,9 @@ void writePlanes(const std::string& path, const OitPlanes& planes) {
   };
   addSet(sumsOf(planes.published()));
   if (planes.scatters()) addSet(scatterOf(planes.published()));
+  if (planes.disperses())
+    for (const VectorPlane& plane : kDispersionPlanes)
+      addChannel(plane.name, [&](std::size_t i) { return planes.dispersion[i][plane.component]; });
 
   file.attributes = {
       {"pellucid:method", planes.info.method},
@@ -252,6 +260,13 @@ OitPlanes readPlanes(const std::string& path) {
   if (scatters || (scatter.scalarName && part.find(scatter.scalarName))) {
     addScatterPlanes(planes);
     readSet(scatter);
+  }
+  const bool disperses = std::any_of(std::begin(kDispersionPlanes), std::end(kDispersionPlanes),
+                                     [&](const VectorPlane& plane) { return part.find(plane.name) != nullptr; });
+  if (disperses) {
+    if (published) throw InputError(path + ": found oit.dispersion.* in tier published, expected none");
+    addDispersionPlane(planes);
+    readSet({{std::begin(kDispersionPlanes), std::end(kDispersionPlanes)}});
   }
   if (published)
     for (int y = 0; y < planes.data.height(); ++y)

@@ -4,6 +4,7 @@
 
 #include "composite/cli/foliage_flags.h"
 #include "composite/cli/render.h"
+#include "composite/cli/mixed.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
@@ -24,6 +25,7 @@ struct AccumulateFlags {
   MethodFlags method;
   ScatterFlags scatter;
   FoliageFlags foliage;
+  LowResFlags lowRes;
   RunFlags run;
 };
 
@@ -59,13 +61,19 @@ void accumulate(const AccumulateFlags& flags) {
   GlContext context(flags.scene.device);
   TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
   flags.foliage.applyTo(settings, &pass, shot->opaque.gbuffer, shot->camera, stages);
+  const int factor = flags.lowRes.factorFor(shot->scene, flags.method.precision != "float" ? "--precision " + flags.method.precision : "");
+  PassStatistics statistics;
   const OitPlanes planes = stages.time("transparent pass", [&] {
-    return flags.method.isExact() ? exactPlanes(pass, settings, *shot) : pass.accumulate(settings);
+    if (!flags.method.isExact())
+      return accumulateMixed(pass, settings, shot->opaque.gbuffer, shot->camera, factor, statistics);
+    OitPlanes exact = exactPlanes(pass, settings, *shot);
+    statistics = pass.statistics();
+    return exact;
   });
   stages.time("write", [&] { writePlanes(flags.output, planes); });
   nlohmann::json report{{"output", flags.output}};
   RenderCounts counts;
-  addStatistics(pass.statistics(), counts);
+  addStatistics(statistics, counts);
   reportRun(flags.run, stages, counts, context.description(), report);
 }
 
@@ -82,6 +90,7 @@ void addAccumulate(CLI::App& app) {
   flags->method.addTo(*verb, false);
   flags->scatter.addTo(*verb);
   flags->foliage.addTo(*verb);
+  flags->lowRes.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { accumulate(*flags); });
 }

@@ -33,6 +33,7 @@ struct CompositeFlags {
   ScatterFlags scatter;
   LookupFlags lookup;
   FoliageFlags foliage;
+  LowResFlags lowRes;
   RunFlags run;
   ShadowFlags shadow;
   StochasticFlags stochastic;
@@ -78,7 +79,16 @@ void composite(const CompositeFlags& flags) {
   flags.method.applyTo(settings.pass, shot->camera);
   flags.scatter.applyTo(settings.pass);
 
+  // What works from lists of every fragment has no low resolution.
+  const std::string listed = settings.sortedTruth || settings.listMethod || settings.stochastic ? "--method " + flags.method.method
+                             : settings.tolerance                        ? "--tolerance"
+                             : flags.method.precision != "float"         ? "--precision " + flags.method.precision
+                             : flags.systems != "off"                    ? "--systems"
+                             : !shot->deep.empty() || shot->deepOpaque   ? "deep EXR"
+                                                                         : "";
+  settings.lowResolution = flags.lowRes.factorFor(shot->scene, listed);
   const ShadowResult shadows = stages.time("shadows", [&] { return castShadows(flags.shadow, *shot, flags.samples); });
+
   std::unique_ptr<GlContext> context;
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
@@ -92,10 +102,18 @@ void composite(const CompositeFlags& flags) {
     settings.systems = &systems;
     for (const SystemPass& system : systems) spdlog::info("system {}: at {:.4g} m", system.name, system.z);
   }
+  std::optional<ResolvePass> device;
+  if (flags.lookup.onDevice()) {
+    if (settings.sortedTruth || settings.listMethod || settings.stochastic || settings.tolerance ||
+        flags.method.isPublished() || shot->deepOpaque || flags.systems != "off")
+      throw UsageError(fmt::format("--resolve: found gl with {}, expected cpu: it has no sums to resolve", listed));
+    if (!context) context = std::make_unique<GlContext>(flags.scene.device);
+    settings.device = &device.emplace(*context);
+  }
   flags.foliage.applyTo(settings.pass, pass.get(), gbuffer, shot->camera, stages);
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
   RenderCounts counts;
-  const Veil veil = renderVeil(pass.get(), shot->deep, settings, gbuffer, stages, counts);
+  const Veil veil = renderVeil(pass.get(), shot->deep, settings, gbuffer, shot->camera, stages, counts);
   Picture picture = stages.time("compose", [&] { return compose(veil, gbuffer); });
   for (std::size_t i = 0; i < shadows.touched.size(); ++i) picture.touched[i] |= shadows.touched[i];
 
@@ -116,9 +134,10 @@ void composite(const CompositeFlags& flags) {
     truth.listMethod.reset();
     truth.tolerance.reset();
     truth.systems = nullptr;
+    truth.device = nullptr;
     RenderCounts truthCounts;
     Stages truthStages;
-    const Veil truthVeil = renderVeil(pass.get(), shot->deep, truth, gbuffer, truthStages, truthCounts);
+    const Veil truthVeil = renderVeil(pass.get(), shot->deep, truth, gbuffer, shot->camera, truthStages, truthCounts);
     const ErrorStatistics error = measureError(picture.rgba, compose(truthVeil, gbuffer).rgba);
     for (const auto& [name, seconds] : truthStages.seconds()) stages.add("truth: " + name, seconds);
     report["error"] = {{"mean", error.mean},
@@ -135,7 +154,10 @@ void composite(const CompositeFlags& flags) {
   if (wantsDebugLayers(flags.layers)) {
     if (!pass)
       throw UsageError("--layers: D, delta, weight and count show the transparent pass: found deep files alone");
-    const OitPlanes planes = stages.time("debug planes", [&] { return pass->accumulate(settings.pass); });
+    PassStatistics statistics;
+    const OitPlanes planes = stages.time("debug planes", [&] {
+      return accumulateMixed(*pass, settings.pass, gbuffer, shot->camera, settings.lowResolution, statistics);
+    });
     for (ExtraLayer& layer : debugLayers(flags.layers, planes)) layers.push_back(std::move(layer));
   }
   const std::map<std::string, std::string> attributes{{"pellucid:method", flags.method.method},
@@ -167,6 +189,8 @@ void addComposite(CLI::App& app) {
   flags->foliage.addTo(*verb);
   flags->shadow.addTo(*verb);
   flags->stochastic.addTo(*verb);
+  flags->lookup.addResolverTo(*verb);
+  flags->lowRes.addTo(*verb);
   flags->run.addTo(*verb);
   verb->add_option("--aa", flags->samples, "Jittered passes, averaged; 1 samples pixel centres")
       ->check(CLI::Range(1, 4096))

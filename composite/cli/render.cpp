@@ -51,7 +51,8 @@ class ListPainter {
                if (!pass_) counts_.fragments += lists.fragments.size();
                tile(lists, veil);
              });
-    if (sums_) return resolveOver(std::move(planes_), settings_.resolve, settings_.lookup, gbuffer_);
+    if (sums_)
+      return resolveSums(settings_.device, std::move(planes_), settings_.resolve, settings_.lookup, gbuffer_);
     if (!planes_.scatters()) return veil;
     const Backdrop backdrop = backdropOf(gbuffer_, planes_.solid);
     const Lookups lookups(backdrop, planes_, settings_.lookup);
@@ -162,11 +163,12 @@ void addStatistics(const PassStatistics& statistics, RenderCounts& counts) {
 }
 
 Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,
-                const GBuffer& gbuffer, Stages& stages, RenderCounts& counts) {
+                const GBuffer& gbuffer, const Camera& camera, Stages& stages, RenderCounts& counts) {
   VeilMean mean;
   std::optional<StochasticMean> stochastic;
   if (settings.stochastic && !settings.sortedTruth)
     stochastic.emplace(gbuffer.data.width(), gbuffer.data.height(), *settings.stochastic, settings.samples);
+  PassStatistics statistics;
   for (int i = 0; i < settings.samples; ++i) {
     PassSettings sample = settings.pass;
     sample.sample = samplePosition(i, settings.samples);
@@ -174,6 +176,7 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
       const Veil veil = stages.time("passes of systems", [&] {
         return veilFromSystems(*pass, *settings.systems, settings, sample, gbuffer, counts);
       });
+      statistics = pass->statistics();
       stages.time("average", [&] { mean.add(veil); });
     } else if (settings.sortedTruth || settings.listMethod || stochastic || settings.tolerance || settings.exactSums ||
                settings.deepOpaque || !deep.empty() || !pass) {
@@ -181,16 +184,20 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
         return ListPainter(pass, deep, settings, sample, gbuffer, counts, stochastic ? &*stochastic : nullptr, i)
             .paint();
       });
+      if (pass) statistics = pass->statistics();
       stages.time("average", [&] { mean.add(veil); });
     } else {
-      OitPlanes planes = stages.time("transparent pass", [&] { return pass->accumulate(sample); });
-      const Veil veil = stages.time(
-          "resolve", [&] { return resolveOver(std::move(planes), settings.resolve, settings.lookup, gbuffer); });
+      OitPlanes planes = stages.time("transparent pass", [&] {
+        return accumulateMixed(*pass, sample, gbuffer, camera, settings.lowResolution, statistics);
+      });
+      const Veil veil = stages.time("resolve", [&] {
+        return resolveSums(settings.device, std::move(planes), settings.resolve, settings.lookup, gbuffer);
+      });
       stages.time("average", [&] { mean.add(veil); });
     }
     if (!pass) continue;
     const int systemPasses = counts.passes;
-    addStatistics(pass->statistics(), counts);
+    addStatistics(statistics, counts);
     if (settings.systems) counts.passes = systemPasses;
   }
   return stages.time("average", [&] {

@@ -1,6 +1,8 @@
 // A shot through a method to a veil: N jittered passes, each resolved, averaged in fixed order.
 #pragma once
+#include "composite/cli/device_resolve.h"
 #include "composite/cli/messages.h"
+#include "composite/cli/mixed.h"
 #include "composite/cli/shot.h"
 #include "composite/methods/stochastic.h"
 #include "composite/resolve.h"
@@ -17,6 +19,8 @@ struct RenderSettings {
   bool exactSums = false;                        // --precision exact
   bool sortedTruth = false;                      // `over`
   int samples = 1;                               // --aa
+  ResolvePass* device = nullptr;                 // --resolve gl; null: the CPU resolves
+  int lowResolution = 1;                         // --low-res, of sums without lists
   std::optional<ChosenMethod> listMethod;        // a method that works from fragment lists; nothing: the GL pass's sums
   const DeepOpaque* deepOpaque = nullptr;        // the picture, when it is deep
   std::vector<SystemPass>* systems = nullptr;    // each its own pass, farthest first
@@ -38,7 +42,7 @@ void addStatistics(const PassStatistics& statistics, RenderCounts& counts);
 //   pass  null when the shot has no geometry
 //   deep  the shot's deep files, whose samples join the pass's fragments
 Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,
-                const GBuffer& gbuffer, Stages& stages, RenderCounts& counts);
+                const GBuffer& gbuffer, const Camera& camera, Stages& stages, RenderCounts& counts);
 
 // Fits the weight to the sorted truth on probe pixels at their centres, and says what was chosen. --weight auto
 void fitShotWeight(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const GBuffer& gbuffer,

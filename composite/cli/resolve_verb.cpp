@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/device_resolve.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
@@ -41,7 +42,14 @@ void resolveVerb(const ResolveFlags& flags) {
   settings.selfModulation = flags.selfModulation.isOn(planes.published());
   if (planes.published()) refusePublishedLayers(flags.layers);
   const LookupSettings lookup = flags.lookup.settings();
-  const Veil veil = stages.time("resolve", [&] { return resolveOver(planes, settings, lookup, opaque.gbuffer); });
+  std::optional<GlContext> context;
+  std::optional<ResolvePass> device;
+  if (flags.lookup.onDevice() && planes.published())
+    throw UsageError("--resolve: found gl with planes of tier published, expected cpu");
+  if (flags.lookup.onDevice()) device.emplace(context.emplace());
+  const Veil veil = stages.time("resolve", [&] {
+    return resolveSums(device ? &*device : nullptr, planes, settings, lookup, opaque.gbuffer);
+  });
   const Picture picture = stages.time("compose", [&] { return compose(veil, opaque.gbuffer); });
   std::vector<ExtraLayer> layers = requestedLayers(flags.layers, veil);
   if (wantsDebugLayers(flags.layers))
@@ -51,7 +59,7 @@ void resolveVerb(const ResolveFlags& flags) {
                         {{"pellucid:method", planes.info.method}});
   }));
   nlohmann::json report{{"output", flags.output}};
-  reportRun(flags.run, stages, {}, "CPU", report);
+  reportRun(flags.run, stages, {}, context ? context->description() : "CPU", report);
 }
 
 }  // namespace
@@ -66,6 +74,7 @@ void addResolve(CLI::App& app) {
   flags->run.addTo(*verb);
   flags->lookup.addTo(*verb);
   flags->selfModulation.addTo(*verb);
+  flags->lookup.addResolverTo(*verb);
   addLayersOption(*verb, flags->layers);
   verb->callback([flags] { resolveVerb(*flags); });
 }

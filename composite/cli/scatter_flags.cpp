@@ -38,6 +38,12 @@ void LookupFlags::addTo(CLI::App& verb) {
       ->capture_default_str();
 }
 
+void LookupFlags::addResolverTo(CLI::App& verb) {
+  verb.add_option("--resolve", resolver, "What resolves the sums: cpu, or gl as an engine would")
+      ->check(CLI::IsMember({"cpu", "gl"}))
+      ->capture_default_str();
+}
+
 LookupSettings LookupFlags::settings() const {
   LookupSettings settings;
   settings.kernel = kernel == "disc" ? shading::PLD_DIFFUSE_DISC : shading::PLD_DIFFUSE_GAUSSIAN;
@@ -55,6 +61,9 @@ void SelfModulationFlag::addTo(CLI::App& verb) {
 void ScatterFlags::addTo(CLI::App& verb) {
   verb.add_option("--refract", refract,
                   "Where refracted rays meet the background: fixed:METRES, depth, thickness or off")
+      ->capture_default_str();
+  verb.add_option("--dispersion", dispersion, "on: materials that disperse bend each channel by its own index")
+      ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   verb.add_option("--diffusion", diffusion, "What a layer's spread is proportional to; netCoverage loses clear glass")
       ->check(CLI::IsMember({"coverage", "netCoverage", "off"}))
@@ -85,6 +94,7 @@ void ScatterFlags::applyTo(PassSettings& settings) const {
   scatter.k1 = positive(diffusionScale.substr(colon + 1), "--diffusion-scale", pair);
   if (diffusion == "off") scatter.k0 = 0.0f;
   scatter.netCoverage = diffusion == "netCoverage";
+  scatter.dispersion = dispersion == "on";
   scatter.prune = !noPrune;
 }
 

@@ -12,8 +12,10 @@ namespace pellucid::cli {
 
 // Of the lookup alone: what the compositing step needs.
 struct LookupFlags {
-  std::string kernel = "gaussian", gather = "fast";
+  std::string kernel = "gaussian", gather = "fast", resolver = "cpu";
+  bool onDevice() const { return resolver == "gl"; }
   void addTo(CLI::App& verb);
+  void addResolverTo(CLI::App& verb);
   LookupSettings settings() const;  // throws UsageError
 };
 
@@ -27,7 +29,7 @@ struct SelfModulationFlag {
 
 // Of the transparent pass.
 struct ScatterFlags {
-  std::string refract = "depth", diffusion = "coverage", diffusionScale = "0.3:0.5";
+  std::string refract = "depth", diffusion = "coverage", diffusionScale = "0.3:0.5", dispersion = "on";
   bool noPrune = false;
   void addTo(CLI::App& verb);
   void applyTo(PassSettings& settings) const;  // throws UsageError

@@ -196,7 +196,7 @@ void study(const StudyFlags& flags) {
     Stages unused;
     RenderSettings warm = settings;
     warm.exactSums = lists;
-    renderVeil(pass.get(), shot->deep, warm, gbuffer, unused, counts);
+    renderVeil(pass.get(), shot->deep, warm, gbuffer, shot->camera, unused, counts);
   }
   // The truth is `over` at the most samples.
   std::size_t best = 0;
@@ -214,7 +214,7 @@ void study(const StudyFlags& flags) {
     StudyRow& row = rows[order[done]];
     RenderCounts counts;
     Stages own;
-    const Veil veil = renderVeil(pass.get(), shot->deep, settingsFor(candidate), gbuffer, own, counts);
+    const Veil veil = renderVeil(pass.get(), shot->deep, settingsFor(candidate), gbuffer, shot->camera, own, counts);
     const Picture picture = own.time("compose", [&] { return compose(veil, gbuffer); });
     row.stages = own.seconds();
     for (const auto& [name, seconds] : row.stages) row.seconds += seconds;

@@ -105,10 +105,26 @@ class DeepMerge {
       merged.fragments.insert(merged.fragments.end(), rowFragments[r].begin(), rowFragments[r].end());
       std::vector<Fragment>().swap(rowFragments[r]);
     }
+    addDispersion(merged);
     return end;
   }
 
  private:
+  // Of the lists' own fragments, which lead in every pixel; deep samples refract all channels alike.
+  void addDispersion(FragmentLists& merged) const {
+    merged.dispersion.clear();
+    if (!lists_.disperses()) return;
+    merged.dispersion.resize(merged.fragments.size(), glm::vec4(0.0f));
+    std::size_t pixel = 0;
+    for (int y = merged.window.y0; y < merged.window.y1; ++y)
+      for (int x = merged.window.x0; x < merged.window.x1; ++x, ++pixel) {
+        const std::size_t own = pixelOf(lists_.window, x, y);
+        std::copy(lists_.dispersion.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own]),
+                  lists_.dispersion.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own + 1]),
+                  merged.dispersion.begin() + static_cast<std::ptrdiff_t>(merged.offsets[pixel]));
+      }
+  }
+
   struct Scratch {
     std::vector<DeepSample> volumes;
     std::vector<double> cuts;

@@ -29,11 +29,11 @@ std::size_t largestBlock() {
 
 class BandWriter {
  public:
-  BandWriter() : fragments_(Buffer::make()), cursors_(Buffer::make()) {}
+  BandWriter() : fragments_(Buffer::make()), cursors_(Buffer::make()), dispersion_(Buffer::make()) {}
   void write(Renderer& renderer, const Image<float>& count, const Window& band, FragmentLists& lists);
 
  private:
-  Buffer fragments_, cursors_;
+  Buffer fragments_, cursors_, dispersion_;
   std::vector<std::uint32_t> places_;
 };
 
@@ -55,12 +55,20 @@ void BandWriter::write(Renderer& renderer, const Image<float>& count, const Wind
   checkGl("making room for fragment lists");
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, fragments_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, cursors_.name());
+  lists.dispersion.resize(renderer.disperses() ? lists.fragments.size() : 0);
+  const auto dispersionBytes = static_cast<GLsizeiptr>(lists.dispersion.size() * sizeof(glm::vec4));
+  if (lists.disperses()) {
+    glNamedBufferData(dispersion_.name(), dispersionBytes, nullptr, GL_STREAM_READ);
+    checkGl("making room for dispersion");
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, dispersion_.name());
+  }
   renderer.setBand(band);
   renderer.targets().beginNothing();
   renderer.draw(Output::list, {band});
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(fragments_.name(), 0, bytes, lists.fragments.data());
   glGetNamedBufferSubData(cursors_.name(), 0, cursorBytes, places_.data());
+  if (lists.disperses()) glGetNamedBufferSubData(dispersion_.name(), 0, dispersionBytes, lists.dispersion.data());
   checkGl("reading fragment lists back");
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (places_[i] != lists.offsets[i + 1]) throw std::logic_error("fragments counted and fragments listed differ");

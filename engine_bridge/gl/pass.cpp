@@ -11,7 +11,7 @@
 namespace pellucid {
 
 struct TransparentPass::Impl {
-  const GBuffer& gbuffer;
+  const GBuffer* gbuffer;
   Camera camera;
   gl::Renderer renderer;
   PassStatistics statistics;
@@ -60,6 +60,9 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, const 
   plane(
       renderer.refracts(), 0, "refraction",
       settings.scatter.refract == shading::PLD_REFRACT_OFF ? "switched off" : "no material transmits through a volume");
+  plane(renderer.disperses(), 128, "dispersion",
+        settings.scatter.dispersion ? "no refracting material disperses" : "switched off");
+  plane(layout.disperse, 128, "dispersion", "no refracting material disperses");
   plane(renderer.diffuses(), 0, "diffusion",
         settings.scatter.k0 > 0.0f ? "no material has a collimation below 1" : "switched off");
 }
@@ -67,9 +70,15 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, const 
 }  // namespace
 
 TransparentPass::TransparentPass(GlContext&, const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
-    : impl_(new Impl{gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}, {}}) {}
+    : impl_(new Impl{&gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}, {}}) {}
 
 TransparentPass::~TransparentPass() = default;
+
+void TransparentPass::over(const GBuffer& gbuffer, const Camera& camera) {
+  impl_->renderer.over(gbuffer, camera);
+  impl_->gbuffer = &gbuffer;
+  impl_->camera = camera;
+}
 
 bool TransparentPass::scatters(const PassSettings& settings) const {
   return impl_->renderer.wouldScatter(settings);
@@ -82,7 +91,7 @@ bool TransparentPass::wantsOccluders(const PassSettings& settings) const {
 Image<float> TransparentPass::solidDepth(const PassSettings& settings) {
   PassSettings centre = settings;
   centre.sample = {0.5, 0.5};
-  const Window& data = impl_->gbuffer.data;
+  const Window& data = impl_->gbuffer->data;
   Image<float> z(data.width(), data.height(), std::numeric_limits<float>::infinity());
   for (const Window& part : impl_->renderer.superTiles())
     impl_->renderer.solidDepth(part, centre, settings.budgetBytes, z);
@@ -96,7 +105,7 @@ const PassStatistics& TransparentPass::statistics() const {
 OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
   const auto start = std::chrono::steady_clock::now();
   gl::Renderer& renderer = impl_->renderer;
-  const Window &display = impl_->gbuffer.display, &data = impl_->gbuffer.data;
+  const Window &display = impl_->gbuffer->display, &data = impl_->gbuffer->data;
   const bool published = settings.tier == SumsTier::published;
   OitPlanes planes = published ? emptyPublishedPlanes(display, data) : emptyPlanes(display, data);
   planes.camera = impl_->camera;
@@ -112,7 +121,9 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
     layout.scatter = renderer.scatters();
     layout.light = renderer.canAdd() || layout.scatter || !settings.scatter.prune;
     layout.grey = renderer.grey();
+    layout.disperse = !published && renderer.disperses();
     if (layout.scatter) addScatterPlanes(planes);
+    if (layout.disperse) addDispersionPlane(planes);
     describe(renderer, settings, layout, impl_->statistics);
     if (published) {
       gl::PublishedTargets& targets = impl_->publishedTargets(part.width(), part.height());
@@ -143,7 +154,7 @@ void TransparentPass::fragments(const PassSettings& settings, const std::functio
     // Half for the geometry, half for the fragments.
     renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes / 2);
     gl::listFragments(renderer, settings.budgetBytes / 2, [&](FragmentLists& lists, const Window& band) {
-      const Window& data = impl_->gbuffer.data;
+      const Window& data = impl_->gbuffer->data;
       const int x = data.x0 + part.x0, y = data.y0 + part.y0;
       lists.window = {x + band.x0, y + band.y0, x + band.x1, y + band.y1};
       ++bands;

@@ -30,6 +30,7 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   const bool bends = frame.refracts && (refracts(material) || !frame.prune);
   define("REFRACTS", bends);
   define("REFRACTION_TEXTURE", bends && material.thicknessTexture.texture >= 0);
+  define("DISPERSES", bends && frame.disperses && (disperses(material) || !frame.prune));
   define("DIFFUSES", frame.diffuses && (diffuses(material) || !frame.prune));
   const bool occluded = frame.occludes && infers;
   define("OCCLUDED", occluded);
@@ -59,6 +60,7 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   defines.emplace_back("EXACT_COVERAGE");
   if (frame.solids) defines.emplace_back("SOLIDS");
   if (frame.scatters() && output != Output::count) defines.emplace_back("SCATTER");
+  if (frame.disperses && output != Output::count) defines.emplace_back("DISPERSION");
   return defines;
 }
 

@@ -23,6 +23,8 @@ struct FrameFeatures {
   bool solids = false;                      // there is a solid plane to test against
   bool grey = false;                        // no material transmits colour: one opacity for all channels
   bool refracts = false, diffuses = false;  // some material of the scene does, and the settings let it
+  bool adds = false;                        // some material adds light
+  bool disperses = false;                   // refracts, by wavelength
   bool occludes = false;                    // there are occluders for cut-out materials
   int rimForm = -1;                         // PLD_OCCLUSION_* of their rims; < 0 leaves rims open
   bool prune = true;                        // else every material gets the text of every phenomenon

@@ -33,7 +33,7 @@ void requireMatch(const GBuffer& gbuffer) {
 
 Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
     : scene_(scene),
-      gbuffer_(gbuffer),
+      gbuffer_(&gbuffer),
       camera_(camera),
       textures_(scene),
       stream_(scene),
@@ -62,6 +62,16 @@ Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& cam
   checkGl("preparing the transparent pass");
 }
 
+void Renderer::over(const GBuffer& gbuffer, const Camera& camera) {
+  requireMatch(gbuffer);
+  if (camera.viewFromWorld != camera_.viewFromWorld || camera.orthographic != camera_.orthographic)
+    throw std::logic_error("Renderer::over: another place or kind of camera than the one that everything was placed by");
+  gbuffer_ = &gbuffer;
+  camera_ = camera;
+  opaqueZ_.reset();
+  opaqueZPart_ = {};
+}
+
 void Renderer::classify() {
   std::vector<float> largestScale(scene_.primitives.size(), -1.0f);
   for (std::size_t i = 0; i < placed_.size(); ++i) {
@@ -83,13 +93,15 @@ void Renderer::classify() {
       }
       shader.vertexColours = colours.least != glm::vec4(1.0f) || colours.most != glm::vec4(1.0f);
       shader.canBeSolid = canBeSolid(material, colours, textures_, largestScale[i]);
-      anySolid_ = anySolid_ || shader.canBeSolid;
-      canAdd_ = canAdd_ || canBeAdditive(material);
-      anyColoured_ = anyColoured_ || canTransmitColour(material, shader.vertexColours);
-      anyRefracts_ = anyRefracts_ || pellucid::refracts(material);
-      anyDiffuses_ = anyDiffuses_ || pellucid::diffuses(material);
+      Needs& needs = needs_[material.lowResolution ? 1 : 0];
+      needs.solids = needs.solids || shader.canBeSolid;
+      needs.adds = needs.adds || canBeAdditive(material);
+      needs.refracts = needs.refracts || pellucid::refracts(material);
+      needs.diffuses = needs.diffuses || pellucid::diffuses(material);
+      needs.coloured = needs.coloured || canTransmitColour(material, shader.vertexColours);
+      needs.infers = needs.infers || infers[static_cast<std::size_t>(primitive.material)];
+      needs.disperses = needs.disperses || pellucid::disperses(material);
       shader.infers = infers[static_cast<std::size_t>(primitive.material)];
-      anyInfers_ = anyInfers_ || shader.infers;
     }
     shaders_.push_back(std::move(shader));
   }
@@ -97,36 +109,49 @@ void Renderer::classify() {
 
 std::vector<Window> Renderer::superTiles() const {
   std::vector<Window> parts;
-  const int width = gbuffer_.data.width(), height = gbuffer_.data.height();
+  const int width = gbuffer_->data.width(), height = gbuffer_->data.height();
   for (int y = 0; y < height; y += kSuperTile)
     for (int x = 0; x < width; x += kSuperTile)
       parts.push_back({x, y, std::min(x + kSuperTile, width), std::min(y + kSuperTile, height)});
   return parts;
 }
 
+Renderer::Needs Renderer::needsOf(const PassSettings& settings) const {
+  if (settings.layers != LayerChoice::all) return needs_[settings.layers == LayerChoice::lowResolution ? 1 : 0];
+  const Needs &a = needs_[0], &b = needs_[1];
+  return {a.solids || b.solids, a.adds || b.adds, a.refracts || b.refracts, a.diffuses || b.diffuses,
+          a.disperses || b.disperses, a.coloured || b.coloured, a.infers || b.infers};
+}
+
 void Renderer::chooseFeatures(const PassSettings& settings) {
+  const Needs needs = needsOf(settings);
   const bool all = !settings.scatter.prune;
   features_.prune = settings.scatter.prune;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
   features_.environment = settings.environment != nullptr;
   features_.surroundings = !features_.environment && settings.surroundings != glm::vec3(0.0f);
-  features_.solids = anySolid_ || all;
-  features_.grey = !anyColoured_ && !all;
-  features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (anyRefracts_ || all);
-  features_.diffuses = settings.scatter.k0 > 0.0f && (anyDiffuses_ || all);
-  features_.occludes = settings.occlusion.occluders && wouldOcclude(settings);
+  features_.solids = needs.solids || all;
+  features_.adds = needs.adds;
+  features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (needs.refracts || all);
+  features_.disperses = features_.refracts && settings.scatter.dispersion && (needs.disperses || all);
+  features_.diffuses = settings.scatter.k0 > 0.0f && (needs.diffuses || all);
+  features_.grey = !needs.coloured && !all;
+  // Occluders are planes of the full resolution.
+  features_.occludes = settings.occlusion.occluders && settings.layers != LayerChoice::lowResolution &&
+                       wouldOcclude(settings);
   features_.rimForm = settings.occlusion.rims ? settings.occlusion.form : -1;
 }
 
 bool Renderer::wouldOcclude(const PassSettings& settings) const {
-  return anyInfers_ && (settings.environment || settings.surroundings != glm::vec3(0.0f) ||
+  return needsOf(settings).infers && (settings.environment || settings.surroundings != glm::vec3(0.0f) ||
                         settings.occlusion.directShare > 0.0f);
 }
 
 bool Renderer::wouldScatter(const PassSettings& settings) const {
-  return !settings.scatter.prune || (settings.scatter.refract != shading::PLD_REFRACT_OFF && anyRefracts_) ||
-         (settings.scatter.k0 > 0.0f && anyDiffuses_);
+  const Needs needs = needsOf(settings);
+  return !settings.scatter.prune || (settings.scatter.refract != shading::PLD_REFRACT_OFF && needs.refracts) ||
+         (settings.scatter.k0 > 0.0f && needs.diffuses);
 }
 
 void Renderer::begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
@@ -169,22 +194,22 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   if (!targets_ || targets_->width() != superTile.width() || targets_->height() != superTile.height())
     targets_.emplace(superTile.width(), superTile.height());
   if (!(opaqueZ_ && opaqueZPart_ == superTile)) {
-    opaqueZ_ = uploadPlane(gbuffer_.viewZ, superTile);
+    opaqueZ_ = uploadPlane(gbuffer_->viewZ, superTile);
     opaqueZPart_ = superTile;
   }
 
-  const Window& data = gbuffer_.data;
+  const Window& data = gbuffer_->data;
   const Window part{data.x0 + superTile.x0, data.y0 + superTile.y0, data.x0 + superTile.x1, data.y0 + superTile.y1};
   frame_ = FrameBlock{};
-  frame_.clipFromView = glm::mat4(clipFromView(camera_, gbuffer_.display, part, settings.sample));
+  frame_.clipFromView = glm::mat4(clipFromView(camera_, gbuffer_->display, part, settings.sample));
   frame_.surroundings = glm::vec4(settings.surroundings, 0.0f);
   frame_.weightNear = settings.weight.rangeNear;
   frame_.weightFar = settings.weight.rangeFar;
   frame_.weightExponent = settings.weight.exponent;
-  frame_.depthFactor = 1.0f + gbuffer_.depthPrecision;
+  frame_.depthFactor = 1.0f + gbuffer_->depthPrecision;
   frame_.lightCount = lights_;
   frame_.orthographic = camera_.orthographic ? 1 : 0;
-  const double halfWidth = 0.5 * gbuffer_.display.width(), halfHeight = 0.5 * gbuffer_.display.height();
+  const double halfWidth = 0.5 * gbuffer_->display.width(), halfHeight = 0.5 * gbuffer_->display.height();
   frame_.refraction = {static_cast<float>(settings.scatter.refract), settings.scatter.refractDistance,
                        static_cast<float>(camera_.focal.x * halfWidth),
                        static_cast<float>(camera_.focal.y * halfHeight)};
@@ -272,6 +297,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(instance.primitive)];
     if (output == Output::solid && !shaders_[static_cast<std::size_t>(instance.primitive)].canBeSolid) continue;
     const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
+    if (!takes(settings_.layers, material)) continue;
     const Placed& placed = placed_[one.instance];
     const glm::mat4 viewFromObject(placed.viewFromObject);
     const Program& wanted = programFor(instance.primitive, output);

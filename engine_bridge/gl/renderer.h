@@ -18,6 +18,9 @@ class Renderer {
  public:
   Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
 
+  // From now on draws over another picture, from the same place through a lens or a window that may differ.
+  void over(const GBuffer& gbuffer, const Camera& camera);
+
   // Parts of the data window that are drawn at once, in pixels of its top left corner, row by row.
   std::vector<Window> superTiles() const;
 
@@ -33,12 +36,13 @@ class Renderer {
   void setBand(const Window& band);
 
   Targets& targets() { return *targets_; }
-  bool canAdd() const { return canAdd_; }
+  bool canAdd() const { return features_.adds; }
   bool grey() const { return features_.grey; }
   bool hasSolids() const { return features_.solids; }
   bool scatters() const { return features_.scatters(); }
   bool refracts() const { return features_.refracts; }
   bool diffuses() const { return features_.diffuses; }
+  bool disperses() const { return features_.disperses; }
   // Whether a pass with these settings would.
   bool wouldScatter(const PassSettings& settings) const;
   bool wouldOcclude(const PassSettings& settings) const;
@@ -55,7 +59,13 @@ class Renderer {
     bool infers = false;  // its rims take their occlusion from their neighbours
     const Program* programs[kOutputs] = {};  // by Output, looked up once per begin()
   };
+  // What the materials of one resolution have.
+  struct Needs {
+    bool solids = false, adds = false, refracts = false, diffuses = false, disperses = false;
+    bool coloured = false, infers = false;  // transmit colour; have rims whose occlusion is inferred
+  };
   void classify();
+  Needs needsOf(const PassSettings& settings) const;
   const Program& programFor(int primitive, Output output);
   void uploadFrame();
   void uploadSurroundings();
@@ -63,7 +73,7 @@ class Renderer {
   void drawChunk(const std::vector<ChunkDraw>& draws, Output output);
 
   const Scene& scene_;
-  const GBuffer& gbuffer_;
+  const GBuffer* gbuffer_;
   Camera camera_;
   SceneTextures textures_;
   GeometryStream stream_;
@@ -73,8 +83,7 @@ class Renderer {
   std::vector<Placed> placed_;  // per instance
   std::vector<Shader> shaders_;
   int lights_ = 0;
-  bool anySolid_ = false, canAdd_ = false, anyRefracts_ = false, anyDiffuses_ = false, anyColoured_ = false,
-       anyInfers_ = false;
+  Needs needs_[2];  // of full, of low resolution
 
   void chooseFeatures(const PassSettings& settings);
   void prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);

@@ -41,7 +41,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glNamedBufferData(frameBuffer.name(), sizeof(frame), &frame, GL_STATIC_DRAW);
   gl::checkGl("uploading fragments to replay");
 
-  const bool scatters = std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
+  const bool scatters = lists.disperses() || std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
     return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
   });
   std::vector<std::string> defines{"WEIGHT " + std::to_string(weight.kind),
@@ -49,6 +49,13 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   if (scatters) {
     defines.emplace_back("SCATTER");
     addScatterPlanes(planes);
+  }
+  const gl::Buffer dispersionBuffer = gl::Buffer::make();
+  if (lists.disperses()) {
+    defines.emplace_back("DISPERSION");
+    addDispersionPlane(planes);
+    fill(dispersionBuffer, lists.dispersion);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, dispersionBuffer.name());
   }
   const gl::Program program = gl::buildProgram("gl/fullscreen.vert", "gl/replay.frag", defines);
   const gl::VertexArray noVertices = gl::VertexArray::make();
@@ -58,7 +65,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glDisable(GL_CULL_FACE);
   glViewport(0, 0, width, height);
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-  targets.beginSums({true, scatters, false});
+  targets.beginSums({true, scatters, false, lists.disperses()});
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, fragmentBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, offsetBuffer.name());

@@ -10,9 +10,10 @@ namespace pellucid::gl {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Attachments: 0 to 4 the sums, of which 4 is light; 5 frontZ; 6 refraction; 7 diffuseZ.
-constexpr GLuint kLight = 4, kFrontZ = 5, kRefraction = 6, kDiffuseZ = 7, kAttachments = 8;
-constexpr GLuint kDepthOfGrey = 2;
+// Attachments: 0 to 4 the sums, of which 4 is light; 5 frontZ, and beside it diffuseZ where layers scatter, since there
+// are but eight; 6 refraction; 7 dispersion.
+constexpr GLuint kLight = 4, kFrontZ = 5, kRefraction = 6, kDispersion = 7;
+constexpr GLuint kAttachments = 8, kDepthOfGrey = 2;
 
 void requireComplete(const Framebuffer& framebuffer) {
   if (glCheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -57,7 +58,7 @@ Targets::Targets(int width, int height) : width_(width), height_(height), sumsFr
 void Targets::beginSums(const SumsLayout& layout) {
   layout_ = layout;
   const GLuint frame = sumsFrame_.name();
-  bool used[kAttachments] = {true, true, true, !layout.grey, layout.light, true, layout.scatter, layout.scatter};
+  bool used[kAttachments] = {true, true, true, !layout.grey, layout.light, true, layout.scatter, layout.disperse};
   if (layout.grey) {
     attach(kDepthOfGrey, greyDepth_, GL_RG32F);
   } else {
@@ -67,8 +68,11 @@ void Targets::beginSums(const SumsLayout& layout) {
   if (layout.light) attach(kLight, sums_[kLight], GL_RGBA32F);
   if (layout.scatter) {
     attach(kRefraction, refraction_, GL_RGBA32F);
-    attach(kDiffuseZ, diffuseZ_, GL_R32F);
+    attach(kFrontZ, nearestZ_, GL_RG32F);
+  } else {
+    attach(kFrontZ, frontZ_, GL_R32F);
   }
+  if (layout.disperse) attach(kDispersion, dispersion_, GL_RGBA32F);
   checkGl("making the targets of the transparent pass");
   requireComplete(sumsFrame_);
   glDisable(GL_SCISSOR_TEST);
@@ -77,10 +81,10 @@ void Targets::beginSums(const SumsLayout& layout) {
   for (GLuint i = 0; i < kAttachments; ++i) attachments[i] = used[i] ? GL_COLOR_ATTACHMENT0 + i : GL_NONE;
   glNamedFramebufferDrawBuffers(frame, kAttachments, attachments);
   const float zero[4] = {0, 0, 0, 0};
-  const float far[4] = {kInfinity, 0, 0, 0};
+  const float far[4] = {kInfinity, kInfinity, 0, 0};
   glEnable(GL_BLEND);
   for (GLuint i = 0; i < kAttachments; ++i) {
-    const bool nearest = i == kFrontZ || i == kDiffuseZ;
+    const bool nearest = i == kFrontZ;
     if (used[i]) glClearNamedFramebufferfv(frame, GL_COLOR, static_cast<GLint>(i), nearest ? far : zero);
     glBlendFunci(i, GL_ONE, GL_ONE);
     glBlendEquationi(i, nearest ? GL_MIN : GL_FUNC_ADD);
@@ -158,11 +162,20 @@ void Targets::readSums(OitPlanes& planes, int x, int y) const {
     if (i == kLight ? layout_.light : !layout_.grey)
       readInto(sums_[i], GL_RGBA, width_, height_, &images[i]->at(x, y), images[i]->width());
   if (layout_.grey) readGrey(planes, x, y);
-  readInto(frontZ_, GL_RED, width_, height_, &planes.frontZ.at(x, y), planes.frontZ.width());
-  if (layout_.scatter) {
+  if (!layout_.scatter) {
+    readInto(frontZ_, GL_RED, width_, height_, &planes.frontZ.at(x, y), planes.frontZ.width());
+  } else {
     readInto(refraction_, GL_RGBA, width_, height_, &planes.refraction.at(x, y), planes.refraction.width());
-    readInto(diffuseZ_, GL_RED, width_, height_, &planes.diffuseZ.at(x, y), planes.diffuseZ.width());
+    Image<glm::vec2> nearest(width_, height_);
+    readInto(nearestZ_, GL_RG, width_, height_, nearest.data(), width_);
+    for (int row = 0; row < height_; ++row)
+      for (int column = 0; column < width_; ++column) {
+        planes.frontZ.at(x + column, y + row) = nearest.at(column, row).x;
+        planes.diffuseZ.at(x + column, y + row) = nearest.at(column, row).y;
+      }
   }
+  if (layout_.disperse)
+    readInto(dispersion_, GL_RGBA, width_, height_, &planes.dispersion.at(x, y), planes.dispersion.width());
   checkGl("reading the planes back");
 }
 

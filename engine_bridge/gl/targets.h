@@ -15,6 +15,7 @@ struct SumsLayout {
   bool light = true;     // plane E; without it, it stays 0
   bool scatter = false;  // refraction and diffusion
   bool grey = false;     // one opacity for all channels
+  bool disperse = false;  // refraction per channel
 };
 
 class Targets {
@@ -47,7 +48,7 @@ class Targets {
   void readGrey(OitPlanes& planes, int x, int y) const;
   int width_, height_;
   SumsLayout layout_;
-  Texture sums_[5], greyDepth_, frontZ_, refraction_, diffuseZ_, solid_, solidDepth_, count_;
+  Texture sums_[5], greyDepth_, frontZ_, refraction_, nearestZ_, dispersion_, solid_, solidDepth_, count_;
   Framebuffer sumsFrame_, solidFrame_, countFrame_, emptyFrame_;
 };
 

@@ -29,6 +29,7 @@ struct ScatterSettings {
   int refract = shading::PLD_REFRACT_DEPTH;  // PLD_REFRACT_*
   float refractDistance = 2.0f;              // metres, fixed mode
   float k0 = 0.3f, k1 = 0.5f;                // metres; k0 = 0 leaves diffusion out
+  bool dispersion = true;                    // materials that disperse have one index per channel
   bool netCoverage = false;                  // the published listing's factor, which loses clear frosted glass
   bool prune = true;                         // leave out what the scene's materials do not have; changes no bit
 };
@@ -45,6 +46,12 @@ struct OcclusionSettings {
 // What the sums are kept in. DESIGN, Precision tiers; `exact` is fragments() and a fold.
 enum class SumsTier { float32, published };
 
+// Which materials of a scene are drawn: all, or those that are marked lowResolution, or the others.
+enum class LayerChoice { all, fullResolution, lowResolution };
+inline bool takes(LayerChoice choice, const Material& material) {
+  return choice == LayerChoice::all || (choice == LayerChoice::lowResolution) == material.lowResolution;
+}
+
 struct PassSettings {
   SumsTier tier = SumsTier::float32;
   shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
@@ -60,6 +67,7 @@ struct PassSettings {
   std::shared_ptr<const Surroundings> environment;   // a picture of them, which wins over the constant
   ScatterSettings scatter;
   OcclusionSettings occlusion;
+  LayerChoice layers = LayerChoice::all;
 };
 
 struct PassStatistics {
@@ -107,6 +115,9 @@ class TransparentPass {
   // Depth of the nearest fragment that hides everything, at pixel centres, of the data window: planar metres, +inf for
   // none. What the occluders of such a pass are made from.
   Image<float> solidDepth(const PassSettings& settings);
+  // From now on draws over another picture, whose camera stands where the first one stood; both must outlive the pass.
+  // What a low-resolution pass draws over.
+  void over(const GBuffer& gbuffer, const Camera& camera);
 
   // Whether planes and fragments of such a pass carry refraction or diffusion.
   bool scatters(const PassSettings& settings) const;

@@ -30,6 +30,10 @@ bool refracts(const Material& material) {
   return interior && !material.unlit && material.transmission > 0.0f && material.ior != 1.0f;
 }
 
+bool disperses(const Material& material) {
+  return refracts(material) && material.dispersion > 0.0f;
+}
+
 bool diffuses(const Material& material) {
   if (material.collimation) return *material.collimation < 1.0f;
   return !material.unlit && material.transmission > 0.0f &&
@@ -46,11 +50,15 @@ MaterialBlock materialBlock(const Material& material) {
   block.covering = {material.coverage.value_or(1.0f), material.additive ? 1.0f : 0.0f, material.normalScale,
                     roughnessThrough(material.ior)};
   block.specular = glm::vec4(material.specularColor, material.specular);
+  const float eta = refracts(material) ? 1.0f / material.ior : 1.0f;
+  const glm::vec3 etas =
+      disperses(material) ? shading::dispersedEta(material.ior, material.dispersion) : glm::vec3(eta);
+  block.dispersion = {etas.r, etas.b, 0.0f, 0.0f};
   // One that states no collimation and does not diffuse is clear.
   block.scattering = {material.collimation ? *material.collimation
                       : diffuses(material) ? -1.0f
                                            : 1.0f,
-                      material.diffuseTransmission, refracts(material) ? 1.0f / material.ior : 1.0f,
+                      material.diffuseTransmission, eta,
                       material.thickness};
   const TextureRef* references[] = {&material.baseColorTexture, &material.metallicRoughnessTexture,
                                     &material.emissiveTexture,  &material.transmissionTexture,

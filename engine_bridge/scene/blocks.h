@@ -19,8 +19,9 @@ struct MaterialBlock {
   glm::vec4 specular;    // tint head-on, strength
   glm::vec4 uvTransforms[12];
   glm::vec4 scattering;  // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
+  glm::vec4 dispersion;  // eta of red, of blue
 };
-static_assert(sizeof(MaterialBlock) == 19 * 16);
+static_assert(sizeof(MaterialBlock) == 20 * 16);
 
 using shading::PunctualLight;
 static_assert(sizeof(PunctualLight) == 64);
@@ -31,6 +32,8 @@ bool hasVolume(const Material& material);
 // Whether layers of it bend, or spread, what lies behind them.
 bool refracts(const Material& material);
 bool diffuses(const Material& material);
+// Whether it bends each channel differently.
+bool disperses(const Material& material);
 // Whether a light sends anything.
 bool shines(const Light& light);
 // In the camera's view space.

@@ -115,7 +115,6 @@ struct MaterialReader {
   void dispersion() const {
     const auto extension = source.extension("KHR_materials_dispersion");
     if (extension) material.dispersion = extension->number("dispersion", 0.0f, 0.0f, kMostDispersion, notes);
-    if (material.dispersion > 0.0f) note("its dispersion is not drawn; light of every colour bends alike");
   }
 
   void diffuseTransmission() const {

@@ -25,6 +25,8 @@ Sample hair();
 Sample cad();
 Sample clouds();
 Sample fineHair(std::uint32_t hairs);  // the sample `hair` with --hairs: 480 triangles each
+Sample street();
+Sample mixed();
 
 struct Entry {
   const char* name;
@@ -32,6 +34,7 @@ struct Entry {
 };
 inline const std::vector<Entry> kSamples = {{"bars", bars},       {"bottles", bottles}, {"smoke", smoke},
                                             {"foliage", foliage}, {"frosted", frosted}, {"ball", ball},
-                                            {"hair", hair},       {"cad", cad},         {"clouds", clouds}};
+                                            {"hair", hair},       {"cad", cad},         {"clouds", clouds},
+                                            {"street", street},   {"mixed", mixed}};
 
 }  // namespace pellucid::samples

@@ -5,38 +5,13 @@
 
 #include "samples/generate/files.h"
 #include "samples/generate/hash.h"
+#include "samples/generate/puffs.h"
 #include "samples/generate/sample.h"
 
 namespace pellucid::samples {
 namespace {
 
-constexpr int kPuffEdge = 96, kPuffs = 2, kCards = 56;
-
-// Smooth noise on the integer lattice. [0,1]
-double noise(glm::dvec2 p, std::uint32_t seed) {
-  const glm::dvec2 cell = glm::floor(p), f = p - cell, s = f * f * (3.0 - 2.0 * f);
-  const auto corner = [&](int dx, int dy) {
-    return unit(hash(static_cast<std::uint32_t>(static_cast<int>(cell.x) + dx),
-                     static_cast<std::uint32_t>(static_cast<int>(cell.y) + dy), seed));
-  };
-  return glm::mix(glm::mix(corner(0, 0), corner(1, 0), s.x), glm::mix(corner(0, 1), corner(1, 1), s.x), s.y);
-}
-
-// White, with the opacity of a ragged ball of smoke; clear at the rim.
-Image<glm::vec4> puff(std::uint32_t seed) {
-  Image<glm::vec4> texels(kPuffEdge, kPuffEdge);
-  for (int y = 0; y < kPuffEdge; ++y)
-    for (int x = 0; x < kPuffEdge; ++x) {
-      const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) * (2.0 / kPuffEdge) - 1.0;
-      double ragged = 0.0;
-      for (std::uint32_t octave = 0; octave < 4; ++octave)
-        ragged += noise((p + 1.0) * (2.5 * (1 << octave)), hash(seed, octave)) / (2 << octave);
-      const double ball = std::max(0.0, 1.0 - glm::length(p));
-      const double density = std::clamp(3.0 * ball * ragged - 0.15 * (1.0 - ball), 0.0, 1.0);
-      texels.at(x, y) = glm::vec4(1.0f, 1.0f, 1.0f, static_cast<float>(density * density * (3.0 - 2.0 * density)));
-    }
-  return texels;
-}
+constexpr int kPuffs = 2, kCards = 56;
 
 // Cards that face the window, each turned in its plane, their light baked into vertex colours: warmer towards the sun.
 void addSmoke(Glb& glb, glm::dvec3 centre, glm::dvec3 reach, glm::dvec3 toSun) {

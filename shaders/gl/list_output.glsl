@@ -5,12 +5,15 @@
 #include "shared/refraction.glsl"
 
 layout(std430, binding = 3) writeonly buffer Fragments { FragmentRecord fragments[]; };
+#ifdef DISPERSION
+layout(std430, binding = 7) writeonly buffer Dispersions { vec4 dispersions[]; };  // one per fragment
+#endif
 layout(std430, binding = 4) buffer Cursors { uint cursors[]; };  // per pixel of the band: where its next fragment goes
 
 layout(location = 4) flat in uint triangleNumber;  // within the primitive
 uniform uint instanceIdentity;
 
-void appendFragment(Layer layer, Scatter scatter, ivec2 pixel) {
+void appendFragment(Layer layer, Scatter scatter, vec4 dispersion, ivec2 pixel) {
   FragmentRecord record;
   record.radiance = layer.radiance;
   record.coverage = layer.coverage;
@@ -21,5 +24,9 @@ void appendFragment(Layer layer, Scatter scatter, ivec2 pixel) {
   record.identity = identityOf(instanceIdentity, triangleNumber);
   ivec2 inBand = pixel - band.xy;
   uint place = atomicAdd(cursors[inBand.y * band.z + inBand.x], 1u);
-  if (place < uint(fragments.length())) fragments[place] = record;
+  if (place >= uint(fragments.length())) return;
+  fragments[place] = record;
+#ifdef DISPERSION
+  dispersions[place] = dispersion;
+#endif
 }

@@ -13,6 +13,7 @@ layout(std140, binding = 1) uniform MaterialValues {
   vec4 specular;            // tint head-on, strength
   vec4 uvTransforms[12];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
   vec4 scattering;          // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
+  vec4 dispersion;          // eta of red, of blue
 } material;
 
 layout(binding = 0) uniform sampler2D baseTexture;

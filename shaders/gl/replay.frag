@@ -4,6 +4,9 @@
 #include "gl/sums_output.glsl"
 
 layout(std430, binding = 3) readonly buffer Fragments { FragmentRecord fragments[]; };
+#ifdef DISPERSION
+layout(std430, binding = 7) readonly buffer Dispersions { vec4 dispersions[]; };
+#endif
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 
 uniform uint turn;
@@ -29,6 +32,10 @@ void main() {
   Scatter scatter;
   scatter.offset = record.offset;
   scatter.variance = record.variance;
-  writeScatter(layer, scatter);
+  vec4 dispersion = vec4(0.0f);
+#ifdef DISPERSION
+  dispersion = dispersions[place];
+#endif
+  writeScatter(layer, scatter, dispersion);
 #endif
 }

@@ -14,7 +14,13 @@ float backdropZ(ivec2 pixel) {
   return z;
 }
 
-Scatter scatterHere(Layer layer, Surface surface, ivec2 pixel) {
+struct ScatterHere {
+  Scatter scatter;
+  vec4 dispersion;  // offset of red minus that of green, of blue minus that of green
+};
+
+ScatterHere scatterHere(Layer layer, Surface surface, ivec2 pixel) {
+  vec4 dispersion = vec4(0.0f);
   Scatter scatter;
   scatter.offset = vec2(0.0f);
   scatter.variance = 0.0f;
@@ -33,8 +39,14 @@ Scatter scatterHere(Layer layer, Surface surface, ivec2 pixel) {
 #ifdef REFRACTION_TEXTURE
     thickness *= thicknessTexel();
 #endif
-    scatter.offset = recordedOffset(refractionOffset(settings, viewPosition, toEye, normal, material.scattering.z,
-                                                     backdropZ(pixel), thickness));
+    float behind = backdropZ(pixel);
+    vec2 offset = refractionOffset(settings, viewPosition, toEye, normal, material.scattering.z, behind, thickness);
+    scatter.offset = recordedOffset(offset);
+#ifdef DISPERSES
+    vec2 red = refractionOffset(settings, viewPosition, toEye, normal, material.dispersion.r, behind, thickness);
+    vec2 blue = refractionOffset(settings, viewPosition, toEye, normal, material.dispersion.g, behind, thickness);
+    dispersion = vec4(red - offset, blue - offset);
+#endif
   }
 #endif
 #ifdef DIFFUSES
@@ -50,6 +62,9 @@ Scatter scatterHere(Layer layer, Surface surface, ivec2 pixel) {
   scatter.variance = layerVariance(settings, layer.coverage, layer.transmission, collimation, layer.z,
                                    backdropZ(pixel));
 #endif
-  return scatter;
+  ScatterHere here;
+  here.scatter = scatter;
+  here.dispersion = dispersion;
+  return here;
 }
 #endif

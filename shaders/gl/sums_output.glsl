@@ -1,6 +1,6 @@
 #pragma once
-// Adds one layer to the planes by fixed-function blending: targets 0-4 and 6 ONE, ONE; targets 5 and 7 MIN. GREY: the
-// layout of scenes without coloured transmission.
+// Adds one layer to the planes by fixed-function blending: all targets ONE, ONE but target 5, MIN. GREY: the layout of
+// scenes without coloured transmission.
 #include "shared/refraction.glsl"
 
 layout(location = 0) out vec4 radianceSum;
@@ -13,10 +13,14 @@ layout(location = 2) out vec4 opacitySum;
 layout(location = 3) out vec4 depthSum;
 #endif
 layout(location = 4) out vec4 lightSum;
-layout(location = 5) out float frontZ;
 #ifdef SCATTER
+layout(location = 5) out vec2 nearestZ;  // of all layers, of those that diffuse
 layout(location = 6) out vec4 refractionSum;
-layout(location = 7) out float diffuseZ;
+#else
+layout(location = 5) out float nearestZ;
+#endif
+#ifdef DISPERSION
+layout(location = 7) out vec4 dispersionSum;
 #endif
 
 void writeSums(Layer layer, WeightSettings settings) {
@@ -32,15 +36,23 @@ void writeSums(Layer layer, WeightSettings settings) {
   radianceSum = targets.radiance;
   opacitySum = targets.opacity;
   depthSum = targets.depth;
-  frontZ = layer.z;
+#ifdef SCATTER
+  nearestZ.x = layer.z;
+#else
+  nearestZ = layer.z;
+#endif
 }
 
 #ifdef SCATTER
 // After writeSums().
-void writeScatter(Layer layer, Scatter scatter) {
+//   dispersion  see packDispersion()
+void writeScatter(Layer layer, Scatter scatter, vec4 dispersion) {
   ScatterTargets targets = packScatter(layer, scatter);
   refractionSum = targets.refraction;
   lightSum.a = targets.refractionZ;
-  diffuseZ = targets.diffuseZ;
+  nearestZ.y = targets.diffuseZ;
+#ifdef DISPERSION
+  dispersionSum = packDispersion(layer, scatter, dispersion);
+#endif
 }
 #endif

@@ -84,21 +84,25 @@ void main() {
   Scatter scatter;
   scatter.offset = vec2(0.0f);
   scatter.variance = 0.0f;
+  vec4 dispersion = vec4(0.0f);
 #ifdef SCATTER
-  scatter = scatterHere(layer, surface, pixel);
+  ScatterHere here = scatterHere(layer, surface, pixel);
+  scatter = here.scatter;
+  dispersion = here.dispersion;
 #endif
 #endif
 #if defined(OUTPUT_SUMS)
   writeSums(layer, settings);
 #ifdef SCATTER
-  writeScatter(layer, scatterHere(layer, surface, pixel));
+  ScatterHere here = scatterHere(layer, surface, pixel);
+  writeScatter(layer, here.scatter, here.dispersion);
 #endif
 #elif defined(OUTPUT_PUBLISHED)
   writePublished(layer, scatter, settings);
 #elif defined(OUTPUT_COUNT)
   fragmentCount = 1.0f;
 #else
-  appendFragment(layer, scatter, pixel);
+  appendFragment(layer, scatter, dispersion, pixel);
 #endif
 #endif
 }

@@ -36,11 +36,11 @@ PLD_FN bool isSolid(float coverage, vec3 transmission) {
   return coverage >= 1.0f && transmission.r == 0.0f && transmission.g == 0.0f && transmission.b == 0.0f;
 }
 
-PLD_FN OitSums layerSums(Layer layer, WeightSettings settings, int normalisation) {
+// What a layer adds.
+//   w, wz  its weight, and the part of it that depends on depth alone
+PLD_FN OitSums weighedSums(Layer layer, float w, float wz, int normalisation) {
   vec3 o = opacityOf(layer.coverage, layer.transmission);
   float netOpacity = meanOf(o);
-  float w = layerWeight(settings, layer.z, netOpacity);
-  float wz = depthWeight(settings, layer.z);
   vec3 adds = vec3(0.0f);
   if (normalisation == PLD_NORMALISE_SPECTRAL) {
     adds.r = isAdditive(layer.coverage, layer.transmission.r) ? 1.0f : 0.0f;
@@ -71,6 +71,11 @@ PLD_FN OitSums layerSums(Layer layer, WeightSettings settings, int normalisation
   sums.opacityZ = opacityZ;
   sums.count = 1.0f;
   return sums;
+}
+
+PLD_FN OitSums layerSums(Layer layer, WeightSettings settings, int normalisation) {
+  float netOpacity = meanOf(opacityOf(layer.coverage, layer.transmission));
+  return weighedSums(layer, layerWeight(settings, layer.z, netOpacity), depthWeight(settings, layer.z), normalisation);
 }
 
 // How sums lie in RGBA32F targets, encoder beside decoder.

@@ -7,6 +7,8 @@ const int PLD_DIFFUSE_DISC = 1;
 
 const float PLD_LARGEST_SPREAD = 1e6f;  // pixels, one layer
 const float PLD_GAUSSIAN_REACH = 4.0f;  // kappa: standard deviations
+const int PLD_DISC_STRIDE = 2;          // PT17 listing 3
+const float PLD_DISC_LARGEST = 16.0f;   // pixels
 // Below the first a diffused lookup is the bilinear one, above the second the kernel's, in between both. Pixels
 const float PLD_SPREAD_NONE = 0.25f;
 const float PLD_SPREAD_FULL = 0.75f;

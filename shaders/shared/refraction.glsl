@@ -119,6 +119,30 @@ PLD_FN ScatterTargets packScatter(Layer layer, Scatter scatter) {
   return targets;
 }
 
+// Indices outside over inside for red, green and blue of a dispersive material; green keeps `ior`. KHR_materials_dispersion
+//   ior         inside over outside, >= 1
+//   dispersion  20 over the Abbe number, >= 0
+PLD_FN vec3 dispersedEta(float ior, float dispersion) {
+  precise float spread = (ior - 1.0f) * (0.025f * dispersion);
+  precise vec3 eta = vec3(1.0f) / max(vec3(ior - spread, ior, ior + spread), vec3(1.0f));
+  return eta;
+}
+
+// What a dispersive layer adds to the plane of dispersion: weighted as its offset is, see packScatter().
+//   dispersion  offset of red minus that of green, of blue minus that of green, float pixels
+PLD_FN vec4 packDispersion(Layer layer, Scatter scatter, vec4 dispersion) {
+  bool refracts = scatter.offset.x != 0.0f || scatter.offset.y != 0.0f;
+  precise vec4 weighed = (refracts ? refractionWeight(layer.coverage, layer.transmission) : 0.0f) * dispersion;
+  return weighed;
+}
+
+// The mean of it over a pixel's layers.
+//   weightSum  sum of W
+PLD_FN vec4 dispersionOf(vec4 dispersionSum, float weightSum) {
+  precise vec4 mean = weightSum > 0.0f ? dispersionSum / weightSum : vec4(0.0f);
+  return mean;
+}
+
 // What a pixel's sums say about the way back to the background.
 struct Path {
   vec2 offset;        // mean delta, float pixels, y down

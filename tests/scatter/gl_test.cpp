@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "composite/fold.h"
+#include "composite/gather.h"
 #include "composite/resolve.h"
 #include "gbuffer/planes_io.h"
 #include "tests/gl/builder.h"
@@ -152,6 +153,51 @@ TEST(ScatterGl, BackFacesAndThinWallsDoNotRefract) {
       EXPECT_GT(planes.weight.at(8, 8).a, 0.0f);
     }
   }
+}
+
+// A ball before a far plane whose colour is its place: what it shows lies on the other side, up for down, left for right.
+TEST(ScatterGl, BallInvertsItsBackground) {
+  constexpr int kSize = 96;
+  Stage stage(kSize, kSize);
+  stage.gbuffer.viewZ = Image<float>(kSize, kSize, 6.0f);
+  stage.gbuffer.beauty = Image<glm::vec4>(kSize, kSize);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      stage.gbuffer.beauty.at(x, y) = glm::vec4(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, 0, 1);
+  Primitive sphere;
+  sphere.material = stage.add(glassOf(1.5f, 0.0f, true));
+  constexpr int kRings = 48, kSegments = 96;
+  constexpr double kRadius = 0.5, kZ = 3.0;
+  for (int j = 0; j <= kRings; ++j)
+    for (int i = 0; i <= kSegments; ++i) {
+      const double polar = glm::pi<double>() * j / kRings, around = 2 * glm::pi<double>() * i / kSegments;
+      Vertex vertex{};
+      vertex.normal = glm::vec3(std::sin(polar) * std::cos(around), std::cos(polar), -std::sin(polar) * std::sin(around));
+      vertex.position = static_cast<float>(kRadius) * vertex.normal - glm::vec3(0, 0, kZ);
+      vertex.colour = glm::vec4(1.0f);
+      sphere.vertices.push_back(vertex);
+    }
+  for (std::uint32_t j = 0; j < kRings; ++j)
+    for (std::uint32_t i = 0; i < kSegments; ++i) {
+      const std::uint32_t a = j * (kSegments + 1) + i, b = a + kSegments + 1;
+      for (const std::uint32_t index : {a, b, a + 1, a + 1, b, b + 1}) sphere.indices.push_back(index);
+    }
+  stage.place(std::move(sphere));
+  const OitPlanes planes = stage.accumulate();
+  const Backdrop backdrop = backdropOf(stage.gbuffer, planes.solid);
+  const Lookups lookups(backdrop, planes, {});
+  const auto middle = static_cast<float>(kSize) / 2;
+  int inverted = 0;
+  for (const int step : {-10, -7, -4, 4, 7, 10}) {
+    const int at = kSize / 2 + step;
+    ASSERT_TRUE(lookups.scattersAt(at, kSize / 2)) << at;
+    const float across = lookups.at(at, kSize / 2).r - middle, down = lookups.at(kSize / 2, at).g - middle;
+    EXPECT_LT(across * static_cast<float>(step), 0.0f) << step;
+    EXPECT_LT(down * static_cast<float>(step), 0.0f) << step;
+    EXPECT_NEAR(across, down, 0.6f) << step;
+    inverted += across * static_cast<float>(step) < 0;
+  }
+  EXPECT_EQ(inverted, 6);
 }
 
 TEST(ScatterGl, PruningChangesNoBit) {
