@@ -172,7 +172,7 @@ void Renderer::solidDepth(const Window& superTile, const PassSettings& settings,
 void Renderer::uploadOccluders(const Window& superTile) {
   const std::shared_ptr<const OccluderPlanes>& planes = settings_.occlusion.occluders;
   if (uploadedOccluders_ != planes || !(occludersPart_ == superTile)) {
-    if (planes->data != gbuffer_.data) throw std::logic_error("occluders of another window than the G-buffer's");
+    if (planes->data != gbuffer_->data) throw std::logic_error("occluders of another window than the G-buffer's");
     occluders_ = uploadPlanes(planes->viewZ, planes->occlusion, superTile);
     occludersPart_ = superTile;
     uploadedOccluders_ = planes;
