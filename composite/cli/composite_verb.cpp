@@ -51,7 +51,7 @@ void composite(const CompositeFlags& flags) {
   settings.listMethod = flags.method.listMethod();
   settings.stochastic = flags.stochastic.settings(flags.method.method, flags.samples);
   settings.lookup = flags.lookup.settings();
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.shadow.on());
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
     throw UsageError(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -127,16 +128,26 @@ void SceneFlags::addTo(CLI::App& verb) {
       ->check(CLI::IsMember({"smooth", "hard"}))
       ->capture_default_str();
   verb.add_option("--order", order, "Submission order: file, reverse or shuffle:SEED")->capture_default_str();
-  verb.add_option("--budget", budget, "Geometry resident at once, in bytes (64M, 2G)")->capture_default_str();
+  verb.add_option("--budget", budget,
+                  "Geometry resident at once, in bytes (64M, 2G): chunks, their GL buffers and pages of the files. "
+                  "--shadows exact decodes all triangles besides")
+      ->capture_default_str();
   verb.add_option("--device", device, "EGL device by number, see inspect --devices");
 }
 
-SceneOptions SceneFlags::options(double metresPerUnit) const {
+SceneOptions SceneFlags::options(double metresPerUnit, bool traced) const {
   SceneOptions options;
   options.metresPerUnit = metresPerUnit;
   options.lumensPerWatt = lumensPerWatt;
   options.overrides = overrides;
+  options.streamBytes = traced ? 0 : pageBytes();
   return options;
+}
+
+std::size_t SceneFlags::pageBytes() const {
+  // More would only keep what has been drawn.
+  constexpr std::size_t kShare = 4, kMost = std::size_t{16} << 20;
+  return std::clamp<std::size_t>(parseBytes(budget, "--budget") / kShare, 1, kMost);
 }
 
 void SceneFlags::applyTo(PassSettings& settings) const {
@@ -145,7 +156,7 @@ void SceneFlags::applyTo(PassSettings& settings) const {
                                                   : TextureFilter::nearest;
   settings.mask = mask == "smooth" ? MaskEdge::smooth : MaskEdge::hard;
   settings.order = parseOrder(order);
-  settings.budgetBytes = parseBytes(budget, "--budget");
+  settings.budgetBytes = std::max<std::size_t>(parseBytes(budget, "--budget") - pageBytes(), 1);
 }
 
 void MethodFlags::addTo(CLI::App& verb, bool listsToo) {

@@ -28,8 +28,12 @@ struct SceneFlags {
   std::string textureFilter = "mipmap", mask = "smooth", order = "file", budget = "256M";
   int device = -1;
   void addTo(CLI::App& verb);
-  SceneOptions options(double metresPerUnit) const;
+  // For the transparent pass: triangles stay in their files, unless rays meet them too. Throws UsageError.
+  SceneOptions options(double metresPerUnit, bool traced) const;
   void applyTo(PassSettings& settings) const;  // throws UsageError
+
+ private:
+  std::size_t pageBytes() const;  // of --budget, for pages of the files
 };
 
 struct MethodFlags {

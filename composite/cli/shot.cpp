@@ -138,12 +138,12 @@ glm::vec3 medianSky(const GBuffer& gbuffer, std::size_t& pixels) {
 }
 
 std::unique_ptr<Shot> loadShot(const std::string& opaquePath, const std::vector<std::string>& scenePaths,
-                               const ReadFlags& read, const SceneFlags& sceneFlags, Stages& stages) {
+                               const ReadFlags& read, const SceneFlags& sceneFlags, Stages& stages, bool traced) {
   auto shot = std::make_unique<Shot>();
   std::vector<std::string> geometry, deep;
   for (const std::string& path : scenePaths) (isExrName(path) ? deep : geometry).push_back(path);
   shot->hasScene = !geometry.empty();
-  stages.time("read scene", [&] { shot->scene = loadScene(geometry, sceneFlags.options(read.unit)); });
+  stages.time("read scene", [&] { shot->scene = loadScene(geometry, sceneFlags.options(read.unit, traced)); });
   say(shot->scene.notes);
   stages.time("read picture", [&] {
     ReadOptions options = read.options();

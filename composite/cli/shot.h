@@ -26,8 +26,10 @@ struct Shot {
 
 // Reads everything and decides on camera and surroundings, saying what was inferred. Throws what the readers throw, and
 // MeaningError when there is no camera, or more than one and no --camera.
+//   traced  rays will meet the scene's triangles: they are decoded, whatever --budget says
 std::unique_ptr<Shot> loadShot(const std::string& opaquePath, const std::vector<std::string>& scenePaths,
-                               const ReadFlags& read, const SceneFlags& sceneFlags, Stages& stages);
+                               const ReadFlags& read, const SceneFlags& sceneFlags, Stages& stages,
+                               bool traced = false);
 
 // The camera of a shot, by flag, file attribute or glTF, in this order.
 Camera chooseCamera(const std::string& flag, const GBuffer& gbuffer, const Scene& scene, const std::string& opaquePath);

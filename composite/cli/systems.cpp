@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "composite/cli/lists.h"
+#include "engine_bridge/scene/triangle_source.h"
 
 namespace pellucid::cli {
 namespace {
@@ -15,9 +16,11 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 std::vector<std::size_t> groupInstances(const std::string& rule, const std::vector<std::string>& paths,
                                         const Scene& scene, std::vector<std::string>& names) {
   std::vector<std::size_t> file;  // of each instance: files are appended in order
+  SceneOptions counting;
+  counting.streamBytes = std::size_t{8} << 20;
   for (std::size_t i = 0; i < paths.size(); ++i)
-    file.resize(paths.size() > 1 ? file.size() + loadScene({paths[i]}, {}).instances.size() : scene.instances.size(),
-                i);
+    file.resize(
+        paths.size() > 1 ? file.size() + loadScene({paths[i]}, counting).instances.size() : scene.instances.size(), i);
   if (rule == "file") {
     names = paths;
     return file;
@@ -62,15 +65,21 @@ Scene partOf(const Scene& scene, const std::vector<std::size_t>& group, std::siz
 
 // Planar distance to the middle of the bounding box of what is transparent; nothing where nothing is.
 std::optional<double> middleOf(const Scene& scene, const Camera& camera) {
+  constexpr std::size_t kBatch = 1024;
   double low = std::numeric_limits<double>::infinity(), high = -low;
+  VertexPlaces places;
+  TriangleBatch batch;
   for (const Instance& instance : scene.instances) {
     const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
     if (!scene.materials[static_cast<std::size_t>(primitive.material)].transparent()) continue;
     const glm::dmat4 viewFromObject = camera.viewFromWorld * instance.worldFromObject;
-    for (const Vertex& vertex : primitive.vertices) {
-      const double z = -(viewFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0)).z;
-      low = std::min(low, z);
-      high = std::max(high, z);
+    for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
+      readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
+      for (const Vertex& vertex : batch.vertices) {
+        const double z = -(viewFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0)).z;
+        low = std::min(low, z);
+        high = std::max(high, z);
+      }
     }
   }
   if (!(low <= high)) return std::nullopt;

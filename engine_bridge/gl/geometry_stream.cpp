@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
-#include <stdexcept>
 
 namespace pellucid::gl {
 namespace {
 
 constexpr std::size_t kFewestSlots = 3;
-constexpr std::size_t kMostChunkBytes = std::size_t{16} << 20;  // what GL 4.5 promises of a storage block
-constexpr std::uint32_t kShuffledRun = 64;                      // triangles that a shuffle keeps in one draw
+// Below the 16 MiB that GL 4.5 promises of a storage block. While a chunk is drawn, llvmpipe holds it several times
+// over.
+constexpr std::size_t kMostChunkBytes = std::size_t{4} << 20;
+constexpr std::uint32_t kShuffledRun = 64;  // triangles that a shuffle keeps in one draw
+constexpr std::uint32_t kBatch = 1024;      // triangles decoded at once
+constexpr std::uint32_t kUnplaced = 0xffffffffu;
 constexpr std::size_t kTriangleBytes = 3 * sizeof(std::uint32_t) + sizeof(std::uint32_t);
 
 // SplitMix64's finaliser.
@@ -22,7 +25,7 @@ std::uint64_t mixed(std::uint64_t x) {
 }
 
 std::uint32_t trianglesOf(const Primitive& primitive) {
-  return static_cast<std::uint32_t>(primitive.indices.size() / 3);
+  return static_cast<std::uint32_t>(primitive.triangles());
 }
 
 // Fisher-Yates over a run of at most kShuffledRun triangles.
@@ -48,7 +51,6 @@ std::size_t ChunkData::bytes() const {
 
 ChunkCutter::ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes)
     : scene_(scene), order_(order), chunkBytes_(chunkBytes) {
-  std::size_t mostVertices = 0;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(scene.instances[i].primitive));
     if (!scene.materials.at(static_cast<std::size_t>(primitive.material)).transparent()) continue;
@@ -56,13 +58,10 @@ ChunkCutter::ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t 
     const std::uint32_t step = order.kind == SubmissionOrder::shuffle ? kShuffledRun : std::max(triangles, 1u);
     for (std::uint32_t first = 0; first < triangles; first += step)
       runs_.push_back({static_cast<std::uint32_t>(i), first, std::min(step, triangles - first)});
-    mostVertices = std::max(mostVertices, primitive.vertices.size());
   }
   if (order.kind == SubmissionOrder::reverse) std::reverse(runs_.begin(), runs_.end());
   if (order.kind == SubmissionOrder::shuffle)
     for (std::size_t i = runs_.size(); i > 1; --i) std::swap(runs_[i - 1], runs_[mixed(order.seed ^ mixed(i)) % i]);
-  place_.resize(mostVertices);
-  placeStamp_.resize(mostVertices, 0);
 }
 
 std::uint32_t ChunkCutter::triangleAt(const Run& run, std::uint32_t turn) const {
@@ -84,37 +83,48 @@ bool ChunkCutter::reuseWhole(const Run& run, ChunkData& chunk) {
   return true;
 }
 
+void ChunkCutter::fetch(const Run& run, std::uint32_t triangle) {
+  if (triangle - batchFirst_ < batchCount_) return;
+  const std::uint32_t end = run.first + run.count;
+  batchFirst_ = triangle;
+  if (order_.kind == SubmissionOrder::reverse)
+    batchFirst_ = std::max(run.first, triangle - std::min(triangle, kBatch - 1));
+  if (order_.kind == SubmissionOrder::shuffle) batchFirst_ = run.first;
+  batchCount_ = std::min(kBatch, (order_.kind == SubmissionOrder::reverse ? triangle + 1 : end) - batchFirst_);
+  const int number = scene_.instances[run.instance].primitive;
+  readTriangles(scene_.primitives[static_cast<std::size_t>(number)], batchFirst_, batchCount_, places_, batch_);
+  place_.assign(batch_.vertices.size(), kUnplaced);
+}
+
 bool ChunkCutter::appendRun(const Run& run, ChunkData& chunk) {
   const int number = scene_.instances[run.instance].primitive;
-  const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(number)];
   ChunkDraw draw{run.instance, static_cast<std::uint32_t>(chunk.triangleNumbers.size()), 0};
   const bool fromStart = done_ == 0;
-  ++stamp_;
+  if (fromStart) batchCount_ = 0;
+  std::fill(place_.begin(), place_.end(), kUnplaced);
   bool full = false;
   for (; done_ < run.count; ++done_) {
     const std::uint32_t triangle = triangleAt(run, done_);
-    const std::uint32_t* corners = &primitive.indices[std::size_t{3} * triangle];
+    fetch(run, triangle);
+    const std::uint32_t* corners = &batch_.indices[std::size_t{3} * (triangle - batchFirst_)];
     std::size_t fresh = 0;
-    for (int i = 0; i < 3; ++i) {
-      if (corners[i] >= primitive.vertices.size()) throw std::logic_error("a primitive's index has no vertex");
-      fresh += placeStamp_[corners[i]] != stamp_ ? 1 : 0;
-    }
+    for (int i = 0; i < 3; ++i) fresh += place_[corners[i]] == kUnplaced ? 1 : 0;
     full = !chunk.indices.empty() && chunk.bytes() + fresh * sizeof(Vertex) + kTriangleBytes > chunkBytes_;
     if (full) break;
     for (int i = 0; i < 3; ++i) {
-      const std::uint32_t corner = corners[i];
-      if (placeStamp_[corner] != stamp_) {
-        placeStamp_[corner] = stamp_;
-        place_[corner] = static_cast<std::uint32_t>(chunk.vertices.size());
-        chunk.vertices.push_back(primitive.vertices[corner]);
+      std::uint32_t& place = place_[corners[i]];
+      if (place == kUnplaced) {
+        place = static_cast<std::uint32_t>(chunk.vertices.size());
+        chunk.vertices.push_back(batch_.vertices[corners[i]]);
       }
-      chunk.indices.push_back(place_[corner]);
+      chunk.indices.push_back(place);
     }
     chunk.triangleNumbers.push_back(triangle);
     ++draw.triangles;
   }
   if (draw.triangles > 0) chunk.draws.push_back(draw);
-  if (!full && fromStart && run.count == trianglesOf(primitive)) whole_.emplace(number, draw);
+  if (!full && fromStart && run.count == trianglesOf(scene_.primitives[static_cast<std::size_t>(number)]))
+    whole_.emplace(number, draw);
   return !full;
 }
 
@@ -141,6 +151,8 @@ GeometryStream::Slot GeometryStream::makeSlot() const {
 }
 
 void GeometryStream::upload(const ChunkData& chunk, Slot& slot) {
+  // Else a driver keeps the chunk before for as long as it is being drawn, beside this one: beyond the budget.
+  slot.drawn.wait();
   auto fill = [](const Buffer& buffer, const auto& values) {
     glNamedBufferData(buffer.name(), static_cast<GLsizeiptr>(values.size() * sizeof(values[0])), values.data(),
                       GL_STREAM_DRAW);
@@ -152,12 +164,13 @@ void GeometryStream::upload(const ChunkData& chunk, Slot& slot) {
   slot.draws = chunk.draws;
 }
 
-void GeometryStream::present(const Slot& slot, const std::function<void(const std::vector<ChunkDraw>&)>& draw) {
+void GeometryStream::present(Slot& slot, const std::function<void(const std::vector<ChunkDraw>&)>& draw) {
   glBindVertexArray(slot.array.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, slot.triangleNumbers.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, slot.vertices.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, slot.indices.name());
   draw(slot.draws);
+  slot.drawn = Fence::after();
 }
 
 void GeometryStream::sweep(SubmissionOrder order, std::size_t budgetBytes,
@@ -176,6 +189,10 @@ void GeometryStream::sweep(SubmissionOrder order, std::size_t budgetBytes,
   const std::size_t chunkBytes = std::min(budgetBytes / (kFewestSlots + 1), kMostChunkBytes);
   const std::size_t slots = std::max(kFewestSlots, budgetBytes / std::max<std::size_t>(chunkBytes, 1) - 1);
   ChunkCutter cutter(scene_, order, chunkBytes);
+  // Room at once: what grows is copied, and for a while there twice. Pages without use are not there at all.
+  staging_.vertices.reserve(chunkBytes / sizeof(Vertex));
+  staging_.indices.reserve(chunkBytes / kTriangleBytes * 3);
+  staging_.triangleNumbers.reserve(chunkBytes / kTriangleBytes);
   while (cutter.next(staging_)) {
     const std::size_t index = chunks_ % slots;
     if (index == slots_.size()) slots_.push_back(makeSlot());

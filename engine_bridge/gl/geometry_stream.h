@@ -8,6 +8,7 @@
 
 #include "engine_bridge/gl/gl_objects.h"
 #include "engine_bridge/gl/transparent_pass.h"
+#include "engine_bridge/scene/triangle_source.h"
 
 namespace pellucid::gl {
 
@@ -40,15 +41,19 @@ class ChunkCutter {
   bool appendRun(const Run& run, ChunkData& chunk);  // false when the chunk is full
   bool reuseWhole(const Run& run, ChunkData& chunk);
   std::uint32_t triangleAt(const Run& run, std::uint32_t turn) const;
+  // Has the triangle, and those that are submitted next, in batch_.
+  void fetch(const Run& run, std::uint32_t triangle);
 
   const Scene& scene_;
   SubmissionOrder order_;
   std::size_t chunkBytes_;
   std::vector<Run> runs_;
-  std::size_t run_ = 0;                            // next run
-  std::uint32_t done_ = 0;                         // triangles of it that earlier chunks hold
-  std::vector<std::uint32_t> place_, placeStamp_;  // vertex of the primitive -> vertex of the chunk
-  std::uint32_t stamp_ = 0;
+  std::size_t run_ = 0;     // next run
+  std::uint32_t done_ = 0;  // triangles of it that earlier chunks hold
+  TriangleBatch batch_;     // of the current run
+  VertexPlaces places_;
+  std::uint32_t batchFirst_ = 0, batchCount_ = 0;
+  std::vector<std::uint32_t> place_;          // vertex of the batch -> vertex of the chunk, kUnplaced
   std::unordered_map<int, ChunkDraw> whole_;  // primitives that lie complete in this chunk: instances share them
 };
 
@@ -69,10 +74,11 @@ class GeometryStream {
     Buffer vertices, indices, triangleNumbers;
     VertexArray array;  // empty: the stages pull their vertices
     std::vector<ChunkDraw> draws;
+    Fence drawn;  // passed when the device has drawn the chunk
   };
   Slot makeSlot() const;
   void upload(const ChunkData& chunk, Slot& slot);
-  void present(const Slot& slot, const std::function<void(const std::vector<ChunkDraw>&)>& draw);
+  void present(Slot& slot, const std::function<void(const std::vector<ChunkDraw>&)>& draw);
 
   const Scene& scene_;
   std::vector<Slot> slots_;

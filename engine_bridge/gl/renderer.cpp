@@ -86,11 +86,7 @@ void Renderer::classify() {
     const Material& material = scene_.materials.at(static_cast<std::size_t>(primitive.material));
     Shader shader{};
     if (material.transparent() && largestScale[i] >= 0.0f) {
-      TexelRange colours;
-      for (const Vertex& vertex : primitive.vertices) {
-        colours.least = glm::min(colours.least, vertex.colour);
-        colours.most = glm::max(colours.most, vertex.colour);
-      }
+      const ColourRange colours = coloursOf(primitive);
       shader.vertexColours = colours.least != glm::vec4(1.0f) || colours.most != glm::vec4(1.0f);
       shader.canBeSolid = canBeSolid(material, colours, textures_, largestScale[i]);
       Needs& needs = needs_[material.lowResolution ? 1 : 0];

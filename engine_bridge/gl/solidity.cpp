@@ -12,7 +12,7 @@ constexpr float kRounding = 1e-5f;   // the shader multiplies in another order
 constexpr float kVanishes = 1e-30f;  // a product this small may flush to 0
 constexpr float kMirrorIor = 1e4f;   // above it 1 - Fresnel may round to 0
 
-float mostCoverage(const Material& material, const TexelRange& colours, const TexelRange& base) {
+float mostCoverage(const Material& material, const ColourRange& colours, const TexelRange& base) {
   const float factor = material.coverage.value_or(1.0f);
   if (material.alphaMode != AlphaMode::blend) return factor;
   return factor * std::min(1.0f, material.baseColor.a * colours.most.a * base.most.a);
@@ -27,7 +27,7 @@ float leastAttenuation(const Material& material, float colour, float mostThickne
 
 }  // namespace
 
-bool canBeSolid(const Material& material, const TexelRange& colours, const SceneTextures& textures,
+bool canBeSolid(const Material& material, const ColourRange& colours, const SceneTextures& textures,
                 float thicknessScale) {
   if (material.additive) return false;
   const TexelRange base = textures.range(material.baseColorTexture.texture);

@@ -7,7 +7,7 @@ namespace pellucid::gl {
 // Never false where a fragment could have coverage 1 and transmission 0; may be true where none does.
 //   colours         of the primitive's vertices
 //   thicknessScale  largest, metres per unit of object space, over the primitive's instances
-bool canBeSolid(const Material& material, const TexelRange& colours, const SceneTextures& textures,
+bool canBeSolid(const Material& material, const ColourRange& colours, const SceneTextures& textures,
                 float thicknessScale);
 
 // Whether a fragment's light could be added rather than averaged: only then is there anything to write to plane E.

@@ -26,8 +26,9 @@ enum Component : std::size_t {
   kFloat = 5126
 };
 
-std::size_t componentSize(const JsonView& type) {
-  switch (type.unsignedInteger()) {
+// 0 for what is no component type.
+std::size_t componentBytes(std::size_t type) {
+  switch (type) {
     case kByte:
     case kUByte:
       return 1;
@@ -38,8 +39,15 @@ std::size_t componentSize(const JsonView& type) {
     case kFloat:
       return 4;
     default:
-      type.refuse(fmt::format("is {}; expected 5120, 5121, 5122, 5123, 5125 or 5126", type.unsignedInteger()));
+      return 0;
   }
+}
+
+std::size_t componentSize(const JsonView& type) {
+  const std::size_t size = componentBytes(type.unsignedInteger());
+  if (size == 0)
+    type.refuse(fmt::format("is {}; expected 5120, 5121, 5122, 5123, 5125 or 5126", type.unsignedInteger()));
+  return size;
 }
 
 std::size_t typeWidth(const JsonView& type) {
@@ -54,9 +62,9 @@ std::size_t typeWidth(const JsonView& type) {
 
 // Elements in a buffer view, `stride` bytes apart.
 struct Layout {
-  Bytes bytes;
+  SharedBytes bytes;
   std::size_t stride = 0;
-  const std::uint8_t* element(std::size_t i) const { return bytes.data() + i * stride; }
+  const std::uint8_t* element(std::size_t i) const { return bytes.bytes().data() + i * stride; }
 };
 
 //   holder  the object with bufferView and byteOffset: an accessor, or a part of its `sparse`
@@ -64,7 +72,7 @@ Layout checkedLayout(GltfFile& file, const JsonView& holder, std::size_t count, 
                      bool mayStride) {
   const JsonView view = file.item("bufferViews", holder.at("bufferView"));
   const std::size_t offset = holder.unsignedInteger("byteOffset", 0);
-  Layout layout{file.viewBytes(view).bytes(), elementSize};
+  Layout layout{file.viewBytes(view), elementSize};
   if (const std::optional<JsonView> stride = mayStride ? view.find("byteStride") : std::nullopt) {
     layout.stride = stride->unsignedInteger();
     if (layout.stride == 0) layout.stride = elementSize;  // glTF 1.0's word for packed, still written by some
@@ -78,7 +86,7 @@ Layout checkedLayout(GltfFile& file, const JsonView& holder, std::size_t count, 
   if (offset > available || needed > available - offset) {
     holder.refuse(fmt::format("reads {} bytes from byte {}; {} has {}", needed, offset, view.where(), available));
   }
-  layout.bytes = layout.bytes.subspan(offset, needed);
+  layout.bytes = layout.bytes.part(offset, needed);
   return layout;
 }
 
@@ -205,7 +213,7 @@ ElementType elementType(GltfFile& file, const JsonView& reference, std::initiali
 }
 
 Elements readElements(GltfFile& file, const JsonView& reference, std::initializer_list<std::size_t> widths,
-                      Integers integers) {
+                      Integers integers, bool inPlace) {
   const JsonView accessor = file.item("accessors", reference);
   const ElementType type = elementType(file, reference, widths, integers);
   const std::size_t size = componentSize(accessor.at("componentType"));
@@ -214,7 +222,15 @@ Elements readElements(GltfFile& file, const JsonView& reference, std::initialize
   elements.count = type.count;
   const std::size_t elementSize = size * elements.width;
   // Checked before anything is allocated: a huge count is only a number so far.
-  if (accessor.find("bufferView")) checkedLayout(file, accessor, elements.count, elementSize, true);
+  if (accessor.find("bufferView")) {
+    const Layout layout = checkedLayout(file, accessor, elements.count, elementSize, true);
+    if (inPlace && !accessor.find("sparse")) {
+      elements.type = type;
+      elements.bytes = layout.bytes;
+      elements.stride = layout.stride;
+      return elements;
+    }
+  }
   elements.values.assign(elements.count * elements.width, 0.0f);
   forEachElement(file, accessor, elements.count, elementSize, [&](std::size_t i, const std::uint8_t* bytes) {
     for (std::size_t c = 0; c < elements.width; ++c) {
@@ -224,20 +240,83 @@ Elements readElements(GltfFile& file, const JsonView& reference, std::initialize
   return elements;
 }
 
-std::vector<std::uint32_t> readIndices(GltfFile& file, const JsonView& reference) {
-  const JsonView accessor = file.item("accessors", reference);
-  const JsonView componentType = accessor.at("componentType");
-  const std::size_t type = indexType(componentType);
+namespace {
+
+std::size_t checkedIndices(const JsonView& accessor) {
+  indexType(accessor.at("componentType"));
   if (accessor.at("type").string() != "SCALAR") {
     accessor.at("type").refuse(fmt::format("is {}; expected SCALAR for indices", accessor.at("type").string()));
   }
-  const std::size_t count = checkedCount(accessor);
+  return checkedCount(accessor);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> readIndices(GltfFile& file, const JsonView& reference) {
+  const JsonView accessor = file.item("accessors", reference);
+  const std::size_t count = checkedIndices(accessor);
+  const JsonView componentType = accessor.at("componentType");
+  const std::size_t type = componentType.unsignedInteger();
   const std::size_t size = componentSize(componentType);
   if (accessor.find("bufferView")) checkedLayout(file, accessor, count, size, true);
   std::vector<std::uint32_t> indices(count, 0);
   forEachElement(file, accessor, count, size,
                  [&](std::size_t i, const std::uint8_t* bytes) { indices[i] = loadIndex(bytes, type); });
   return indices;
+}
+
+Indices placeIndices(GltfFile& file, const JsonView& reference) {
+  const JsonView accessor = file.item("accessors", reference);
+  Indices indices;
+  if (!accessor.find("bufferView") || accessor.find("sparse")) {
+    indices.values = readIndices(file, reference);
+    indices.count = indices.values.size();
+    return indices;
+  }
+  indices.count = checkedIndices(accessor);
+  indices.component = accessor.at("componentType").unsignedInteger();
+  const Layout layout = checkedLayout(file, accessor, indices.count, componentSize(accessor.at("componentType")), true);
+  indices.bytes = layout.bytes;
+  indices.stride = layout.stride;
+  return indices;
+}
+
+float Elements::placedAt(std::size_t element, std::size_t component) const {
+  const std::uint8_t* at = bytes.bytes().data() + element * stride;
+  if (type.component == kFloat) return load<float>(at + component * sizeof(float));
+  return type.valueOf(loadComponent(at + component * componentBytes(type.component), type.component));
+}
+
+std::uint32_t Indices::placedAt(std::size_t i) const {
+  return loadIndex(bytes.bytes().data() + i * stride, component);
+}
+
+namespace {
+
+void announceElements(const SharedBytes& bytes, std::size_t stride, std::size_t size, std::size_t first,
+                      std::size_t last) {
+  if (bytes.file()) bytes.file()->announce(bytes.bytes().subspan(first * stride, (last - first) * stride + size));
+}
+
+}  // namespace
+
+void Elements::announce(std::size_t first, std::size_t last) const {
+  announceElements(bytes, stride, width * componentBytes(type.component), first, last);
+}
+void Indices::announce(std::size_t first, std::size_t last) const {
+  announceElements(bytes, stride, componentBytes(component), first, last);
+}
+void Elements::settle() const {
+  if (bytes.file()) bytes.file()->settle();
+}
+void Indices::settle() const {
+  if (bytes.file()) bytes.file()->settle();
+}
+void Elements::requireWhole() const {
+  if (bytes.file()) bytes.file()->requireWhole();
+}
+void Indices::requireWhole() const {
+  if (bytes.file()) bytes.file()->requireWhole();
 }
 
 }  // namespace pellucid::gltf

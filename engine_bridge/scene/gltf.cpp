@@ -74,6 +74,7 @@ Facing facingOf(const glm::dmat4& worldFromObject) {
 }
 
 bool hasTangents(const Primitive& primitive) {
+  if (primitive.streamed) return true;  // or it would have been decoded
   for (const Vertex& vertex : primitive.vertices)
     if (vertex.tangent != glm::vec2(0.0f)) return true;
   return false;
@@ -83,7 +84,12 @@ bool hasTangents(const Primitive& primitive) {
 class FileLoader {
  public:
   FileLoader(GltfFile& file, std::size_t fileIndex, const SceneOptions& options, Scene& scene, Notes& notes)
-      : file_(file), fileIndex_(fileIndex), options_(options), scene_(scene), notes_(notes), primitives_(file, notes) {}
+      : file_(file),
+        fileIndex_(fileIndex),
+        options_(options),
+        scene_(scene),
+        notes_(notes),
+        primitives_(file, notes, options.streamBytes > 0) {}
 
   void load() {
     const std::vector<PlacedNode> nodes = placeNodes(file_, options_.metresPerUnit, notes_);
@@ -133,6 +139,14 @@ class FileLoader {
     return default_;
   }
 
+  // Whether its normals come from a texture: its tangents may have to be made of all its triangles.
+  bool bumpy(const JsonView& primitive) const {
+    const std::optional<JsonView> reference = primitive.find("material");
+    if (!reference) return false;
+    const std::size_t material = firstMaterial_ + reference->index(file_.count("materials"), "materials");
+    return scene_.materials[material].normalTexture.texture >= 0;
+  }
+
   // One mesh as some node draws it.
   struct Drawn {
     std::size_t mesh;
@@ -151,7 +165,7 @@ class FileLoader {
         result = static_cast<int>(scene_.primitives.size());
         scene_.primitives.push_back(withFlippedWinding(scene_.primitives[static_cast<std::size_t>(original)]));
       }
-    } else if (std::optional<Primitive> primitive = primitives_.read(source, *drawn.pose)) {
+    } else if (std::optional<Primitive> primitive = primitives_.read(source, *drawn.pose, bumpy(source))) {
       primitive->material = materialOf(source);
       const TextureRef& normals = scene_.materials[static_cast<std::size_t>(primitive->material)].normalTexture;
       if (normals.texture >= 0 && !hasTangents(*primitive)) makeTangents(*primitive, normals);
@@ -236,9 +250,10 @@ Scene loadScene(const std::vector<std::string>& paths, const SceneOptions& optio
   checkOption(options.metresPerUnit, "--unit");
   checkOption(options.lumensPerWatt, "--lumens-per-watt");
   Scene scene;
+  const auto ledger = options.streamBytes ? std::make_shared<PageLedger>(options.streamBytes) : nullptr;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     try {
-      GltfFile file(paths[i]);
+      GltfFile file(paths[i], ledger);
       Notes notes(paths[i], scene.notes);
       checkExtensions(file, notes);
       try {

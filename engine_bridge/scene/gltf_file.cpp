@@ -72,7 +72,8 @@ std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::stri
   return bytes;
 }
 
-GltfFile::GltfFile(const std::string& path) : path_(path), content_(std::make_shared<MappedFile>(path, "glTF scene")) {
+GltfFile::GltfFile(const std::string& path, std::shared_ptr<PageLedger> ledger)
+    : path_(path), ledger_(std::move(ledger)), content_(std::make_shared<MappedFile>(path, "glTF scene", ledger_)) {
   bytesRead_ = content_.size();
   const Bytes all = content_.bytes();
   if (all.size() < 4 || littleEndian32(all, 0) != kGlbMagic) {
@@ -211,7 +212,7 @@ std::string GltfFile::pathOf(const std::string& uri, const std::string& whose) c
 
 SharedBytes GltfFile::uriBuffer(const std::string& uri, const std::string& whose) const {
   if (isDataUri(uri)) return SharedBytes(dataUriBytes(uri, whose));
-  return SharedBytes(std::make_shared<MappedFile>(pathOf(uri, whose), printable(whose)));
+  return SharedBytes(std::make_shared<MappedFile>(pathOf(uri, whose), printable(whose), ledger_));
 }
 
 std::vector<std::uint8_t> GltfFile::uriBytes(const std::string& uri, const std::string& whose) const {

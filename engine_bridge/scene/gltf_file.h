@@ -18,7 +18,8 @@ std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::stri
 // A file of the glTF family, opened: the JSON is parsed and asset.version checked. Throws InputError.
 class GltfFile {
  public:
-  explicit GltfFile(const std::string& path);
+  //   ledger  of the pages of its files, or null
+  explicit GltfFile(const std::string& path, std::shared_ptr<PageLedger> ledger = nullptr);
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
@@ -49,6 +50,7 @@ class GltfFile {
   void parseJson(Bytes text);
 
   std::string path_;
+  std::shared_ptr<PageLedger> ledger_;
   SharedBytes content_;  // of the .gltf or .glb
   SharedBytes binary_;   // the BIN chunk of a .glb
   bool hasBinary_ = false;

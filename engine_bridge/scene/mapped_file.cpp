@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstring>
@@ -87,7 +88,13 @@ void giveBack(MappedFile::Slot* slot) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::string& path, const std::string& whose) : path_(path), whose_(whose) {
+void PageLedger::letAllGo() {
+  for (const MappedFile* file : files_) file->letAnnouncedGo();
+  held_ = 0;
+}
+
+MappedFile::MappedFile(const std::string& path, const std::string& whose, std::shared_ptr<PageLedger> ledger)
+    : path_(path), whose_(whose), ledger_(std::move(ledger)) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(gltf::printable(fmt::format("{}: {} {}", whose, path, what)));
   };
@@ -110,12 +117,40 @@ MappedFile::MappedFile(const std::string& path, const std::string& whose) : path
   bytes_ = {static_cast<const std::uint8_t*>(mapped), size};
   const auto begin = reinterpret_cast<std::uintptr_t>(mapped);
   slot_ = takeSlot(begin, begin + (size + pageSize() - 1) / pageSize() * pageSize());
+  if (!ledger_) return;
+  announced_.resize((size - 1) / PageLedger::kWindow + 1, false);
+  ledger_->files_.push_back(this);
 }
 
 MappedFile::~MappedFile() {
   if (bytes_.empty()) return;
+  if (ledger_) std::erase(ledger_->files_, this);
   giveBack(slot_);
   ::munmap(const_cast<std::uint8_t*>(bytes_.data()), bytes_.size());
+}
+
+void MappedFile::settle() const {
+  if (ledger_ && ledger_->held_ > ledger_->limit_) ledger_->letAllGo();
+}
+
+void MappedFile::announce(Bytes part) const {
+  if (!ledger_ || part.empty()) return;
+  const auto from = static_cast<std::size_t>(part.data() - bytes_.data());
+  const std::size_t last = (from + part.size() - 1) / PageLedger::kWindow;
+  for (std::size_t window = from / PageLedger::kWindow; window <= last; ++window) {
+    if (announced_[window]) continue;
+    announced_[window] = true;
+    ledger_->held_ += PageLedger::kWindow;
+  }
+}
+
+void MappedFile::letAnnouncedGo() const {
+  for (std::size_t window = 0; window < announced_.size(); ++window) {
+    if (!announced_[window]) continue;
+    announced_[window] = false;
+    const std::size_t first = window * PageLedger::kWindow;
+    letGo(bytes_.subspan(first, std::min(PageLedger::kWindow, bytes_.size() - first)));
+  }
 }
 
 void MappedFile::letGo(Bytes part) const {

@@ -11,20 +11,46 @@ namespace pellucid {
 
 using Bytes = std::span<const std::uint8_t>;
 
+class MappedFile;
+
+// Bounds the pages of several mapped files that are in memory at once, to the limit and what is announced at a time:
+// what is read is announced beforehand, and when that has come to more than the limit, the next settle() lets all of it
+// go. Between two of them nothing leaves: a page let go while it is still read would come back without an entry. One
+// thread at a time.
+class PageLedger {
+ public:
+  // The most that a kernel brings in around a byte that is read: Linux 6.18 maps whole folios of its page cache.
+  static constexpr std::size_t kWindow = std::size_t{2} << 20;
+
+  explicit PageLedger(std::size_t limit) : limit_(limit) {}
+  std::size_t limit() const { return limit_; }
+
+ private:
+  friend class MappedFile;
+  void letAllGo();
+  std::size_t limit_, held_ = 0;
+  std::vector<const MappedFile*> files_;
+};
+
 // Read-only. Pages come into memory as they are read and leave when they are let go, so a file may be larger than
 // memory. When the file is cut short or its disk fails while it is mapped, reading goes on with zeros and
 // requireWhole() throws: whoever used what was read asks it before anybody believes the result.
 class MappedFile {
  public:
   // Throws InputError when the file is missing, not a regular file or unreadable.
-  //   whose  begins the sentence: "scene.gltf: buffers[0]"
-  MappedFile(const std::string& path, const std::string& whose);
+  //   whose   begins the sentence: "scene.gltf: buffers[0]"
+  //   ledger  null: pages stay until they are let go
+  MappedFile(const std::string& path, const std::string& whose, std::shared_ptr<PageLedger> ledger = nullptr);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
   Bytes bytes() const { return bytes_; }
   const std::string& path() const { return path_; }
+  // What was announced to the ledger so far is read no more.
+  void settle() const;
+  // These bytes are about to be read.
+  void announce(Bytes part) const;
   // The pages that lie in these bytes leave memory; reading them again brings them back. Any bytes may be named.
   void letGo(Bytes part) const;
   // Throws InputError when some of the file could not be read.
@@ -33,9 +59,14 @@ class MappedFile {
   struct Slot;  // one entry of the list that the handler of bus errors walks
 
  private:
+  friend class PageLedger;
+  void letAnnouncedGo() const;
+
   std::string path_, whose_;
   Bytes bytes_;
   Slot* slot_ = nullptr;
+  std::shared_ptr<PageLedger> ledger_;
+  mutable std::vector<bool> announced_;  // by window
 };
 
 // Bytes of a file, or decoded ones that lie in memory.

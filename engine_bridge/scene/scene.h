@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,10 +74,25 @@ struct Material {
   }
 };
 
+// Bounds of vertex colours, with 1.
+struct ColourRange {
+  glm::vec4 least{1.0f}, most{1.0f};
+  void add(const glm::vec4& colour) {
+    least = glm::min(least, colour);
+    most = glm::max(most, colour);
+  }
+};
+
+class TriangleSource;  // triangle_source.h
+
 struct Primitive {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from the front *as placed* by their instances
   int material = 0;                    // index into Scene::materials
+  // When set, the triangles lie in their file, and vertices and indices are empty. SceneOptions::streamBytes
+  std::shared_ptr<const TriangleSource> streamed = nullptr;
+
+  std::size_t triangles() const;
 };
 
 struct Instance {

@@ -115,6 +115,7 @@ int TextureReader::load(const JsonView& texture, TexelUse use, const std::string
   } else {
     const SharedBytes view = file_->viewBytes(file_->item("bufferViews", image.at("bufferView")));
     bytes.assign(view.bytes().begin(), view.bytes().end());
+    if (view.file()) view.file()->letGo(view.bytes());
   }
   result.texels = decodeImage(bytes, use, whose, external ? result.name : "", *notes_);
   texels_ += result.texels.size();

@@ -154,6 +154,34 @@ TEST_F(Samples, SortedTruthMeasuresNothingAgainstItself) {
   EXPECT_EQ(error["max"].get<double>(), 0.0);
 }
 
+// 1 million triangles take no more memory than 200 thousand, where 8 MiB of them may be resident: the file alone has
+// 50 MB, decoded it would be 80.
+TEST_F(Samples, HairWithinItsBudget) {
+  constexpr double kMiB = 1024.0 * 1024.0, kBudget = 8.0, kAllowance = 64.0;
+  RunOptions generator = options;
+  generator.program = "pellucid_samples";
+  double alone = 0;
+  for (const char* hairs : {"1", "417", "2084"}) {
+    ASSERT_EQ(runProgram({".", "hair", "90", "--hairs", hairs}, generator).code, 0);
+    const Ended ended = runProgram({"composite", "hair.exr", "hair.glb", "-o", "out.exr", "--aa", "1", "--budget", "8M",
+                                    "--stats", "--json"},
+                                   options);
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const nlohmann::json statistics = nlohmann::json::parse(ended.out)["statistics"];
+    EXPECT_EQ(statistics["triangles"].get<int>(), 480 * std::stoi(hairs));
+    const double peak = static_cast<double>(ended.peakBytes) / kMiB;
+    if (alone == 0) alone = peak;
+    std::printf("%d triangles: peak %.1f MiB, with one hair %.1f\n", statistics["triangles"].get<int>(), peak, alone);
+    EXPECT_LE(peak, alone + kBudget + kAllowance);
+    // What grows by the triangles is one bit a vertex and a few notes on each thousand triangles.
+    if (std::string(hairs) == "2084") {
+      EXPECT_LE(peak, alone + kBudget + 24.0);
+    }
+  }
+  const Ended refused = generate("bars", ".", {"90", "--hairs", "5"});
+  EXPECT_EQ(refused.code, 2) << refused.err;
+}
+
 TEST_F(Samples, TheMainJobRunsOnEach) {
   for (const std::string name : {"bottles", "smoke", "cad"}) {
     ASSERT_EQ(generate(name).code, 0);

@@ -47,8 +47,14 @@ Ended runProgram(const std::vector<std::string>& arguments, const RunOptions& op
     kill(child, options.signal);
   }
   int status = 0;
-  waitpid(child, &status, 0);
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
   Ended ended;
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  ended.cpuSeconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  ended.peakBytes = static_cast<std::size_t>(usage.ru_maxrss) << 10;
   ended.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   close(out);

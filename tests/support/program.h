@@ -1,5 +1,6 @@
 // Runs the program as a user does, and says how it ended.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,9 @@ namespace pellucid::test {
 struct Ended {
   int code = -1;  // exit code; 128 + signal when killed
   std::string out, err;
-  double seconds = 0;
+  double seconds = 0;         // wall clock
+  double cpuSeconds = 0;      // of all its threads
+  std::size_t peakBytes = 0;  // most that was resident, libraries included
 };
 
 struct RunOptions {
