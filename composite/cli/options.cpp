@@ -69,8 +69,7 @@ std::size_t parseBytes(const std::string& text, const std::string& flag) {
 }
 
 bool isColour(const std::string& text) {
-  return std::count(text.begin(), text.end(), ',') == 2 &&
-         text.find_first_not_of("0123456789+-.eE,") == std::string::npos;
+  return text.find(',') != std::string::npos && text.find_first_not_of("0123456789+-.eE,") == std::string::npos;
 }
 
 glm::vec3 parseColour(const std::string& text, const std::string& flag) {

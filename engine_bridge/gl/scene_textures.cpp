@@ -67,7 +67,7 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
     int references[kReferences];
     referencesOf(material, references);
     for (int slot = 0; slot < kReferences; ++slot) {
-      const Key key{references[slot], slot == 0 ? cutOfBase(material) : 0.0f};
+      const Key key{references[slot], slot == 0 ? keptCut(material) : 0.0f};
       if (key.first < 0 || uploaded_.count(key)) continue;
       const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(key.first));
       const Image<glm::vec4>& texels = texture.texels;
@@ -85,6 +85,17 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
       uploaded_.emplace(key, std::move(uploaded));
     }
   }
+}
+
+// A ramp of alpha keeps its cut by averaging; scaled to some area of the whole texture, it would move.
+float SceneTextures::keptCut(const Material& material) {
+  const int index = material.baseColorTexture.texture;
+  const float cut = index < 0 ? 0.0f : cutOfBase(material);
+  if (!(cut > 0.0f)) return 0.0f;
+  auto known = masks_.find(index);
+  if (known == masks_.end())
+    known = masks_.emplace(index, measureMask(scene_.textures.at(static_cast<std::size_t>(index)).texels).binary).first;
+  return known->second ? cut : 0.0f;
 }
 
 TexelRange SceneTextures::range(int index) const {
@@ -127,7 +138,7 @@ void SceneTextures::bind(const Material& material, TextureFilter filter) {
   referencesOf(material, references);
   for (int i = 0; i < kReferences; ++i) {
     if (references[i] < 0) continue;
-    const Key key{references[i], i == 0 ? cutOfBase(material) : 0.0f};
+    const Key key{references[i], i == 0 ? keptCut(material) : 0.0f};
     Uploaded& uploaded = uploaded_.at(key);
     if (filter == TextureFilter::mipmap && !uploaded.mipmaps) makeMipmaps(key, uploaded);
     glBindTextureUnit(kUnits[i], uploaded.texture.name());

@@ -33,10 +33,13 @@ class SceneTextures {
     bool mipmaps = false;  // made when a filter first asks for them
   };
   using Key = std::pair<int, float>;  // texture, and the cut whose covered area its levels keep; 0 for none
+  // That cut for the base colour of a material that is cut out of a mask; 0 for others.
+  float keptCut(const Material& material);
   void makeMipmaps(const Key& key, Uploaded& uploaded);
 
   const Scene& scene_;
   std::map<Key, Uploaded> uploaded_;
+  std::map<int, bool> masks_;  // by texture: whether its finest level is binary
   std::map<int, TexelRange> ranges_;
   std::map<int, Sampler> samplers_;
 };
