@@ -60,9 +60,10 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, const 
   plane(
       renderer.refracts(), 0, "refraction",
       settings.scatter.refract == shading::PLD_REFRACT_OFF ? "switched off" : "no material transmits through a volume");
-  plane(renderer.disperses(), 128, "dispersion",
-        settings.scatter.dispersion ? "no refracting material disperses" : "switched off");
-  plane(layout.disperse, 128, "dispersion", "no refracting material disperses");
+  plane(layout.disperse, 128, "dispersion",
+        published                     ? "the published targets hold one offset for all channels"
+        : settings.scatter.dispersion ? "no refracting material disperses"
+                                      : "switched off");
   plane(renderer.diffuses(), 0, "diffusion",
         settings.scatter.k0 > 0.0f ? "no material has a collimation below 1" : "switched off");
 }
