@@ -54,7 +54,8 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, const 
     plane(layout.light, 128, "additive light", "no material adds light or transmits");
   }
   plane(renderer.hasSolids(), 0, "solid pass", "no fragment can hide everything");
-  plane(renderer.occludes(), 64, "inferred occlusion",
+  // Read like the picture's own planes, not written.
+  plane(renderer.occludes(), 0, "inferred occlusion",
         renderer.wouldOcclude(settings) ? "switched off" : "no cut-out material, or no surroundings");
   plane(layout.scatter, published ? 8 + 16 : 128 + 32, "scattering planes", "nothing refracts or diffuses");
   plane(
