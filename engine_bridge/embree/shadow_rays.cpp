@@ -49,10 +49,12 @@ struct ShadowRays::Impl {
   TransparentScene traced;
   SurfaceSampler sampler;
   std::vector<PunctualLight> lights;
+  std::vector<float> eta;  // by material
 
   Impl(const Scene& sceneGiven, const Camera& cameraGiven)
       : scene(sceneGiven), camera(cameraGiven), traced(scene, camera), sampler(scene, TexelFilter::bilinear) {
     for (const Light& light : scene.lights) lights.push_back(lightBlock(light, camera));
+    for (const Material& material : scene.materials) eta.push_back(materialBlock(material).scattering.z);
   }
   glm::vec3 density(const Crossing& crossing, const glm::vec3& toLight) const;
   glm::vec3 visibility(std::size_t light, const glm::dvec3& point, std::vector<Crossing>& crossings) const;
@@ -71,7 +73,7 @@ glm::vec3 ShadowRays::Impl::density(const Crossing& crossing, const glm::vec3& t
   const glm::vec3 normal = shading::normalTowardsEye(attributes.normal, towardsLight, toLight);
   const float cosine = std::clamp(std::abs(glm::dot(normal, toLight)), shading::PLD_GRAZING, 1.0f);
   const glm::vec3 t = shading::transmissionAt(surface, cosine);
-  return shading::shadowDensity(shading::opacityOf(surface.coverage, t), cosine, materialBlock(material).scattering.z);
+  return shading::shadowDensity(shading::opacityOf(surface.coverage, t), cosine, eta[static_cast<std::size_t>(primitive.material)]);
 }
 
 glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& point,
