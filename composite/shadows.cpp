@@ -1,6 +1,12 @@
 #include "composite/shadows.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
+
+#include "composite/antialias.h"
+#include "gbuffer/depth_plane.h"
+#include "gbuffer/view_point.h"
 
 namespace pellucid {
 namespace {
@@ -10,6 +16,31 @@ bool finite(const glm::vec3& v) {
 }
 
 }  // namespace
+
+Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, const GBuffer& gbuffer,
+                                  const Camera& camera, int samples) {
+  const Image<float>& viewZ = gbuffer.viewZ;
+  Image<glm::vec3> result(viewZ.width(), viewZ.height(), glm::vec3(1.0f));
+  tbb::parallel_for(0, viewZ.height(), [&](int y) {
+    for (int x = 0; x < viewZ.width(); ++x) {
+      const float z = viewZ.at(x, y);
+      if (!std::isfinite(z)) continue;
+      const DepthPlane plane = depthPlaneAt(viewZ, x, y);
+      glm::dvec3 sum(0.0);
+      for (int i = 0; i < samples; ++i) {
+        glm::dvec2 offset = samplePosition(i, samples) - 0.5;
+        double depth = plane.z(offset.x, offset.y);
+        if (!(depth > 0.0)) {
+          offset = glm::dvec2(0.0);
+          depth = static_cast<double>(z);
+        }
+        sum += glm::dvec3(maps.onOpaque(light, glm::vec3(viewPoint(gbuffer, camera, glm::dvec2(x, y) + offset, depth))));
+      }
+      result.at(x, y) = glm::vec3(sum / static_cast<double>(samples));
+    }
+  });
+  return result;
+}
 
 ShadowCounts relight(const std::vector<ShadowedLight>& lights, Image<glm::vec4>& beauty, Image<std::uint8_t>& touched) {
   ShadowCounts counts;

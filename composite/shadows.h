@@ -5,9 +5,16 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "gbuffer/image.h"
+#include "gbuffer/gbuffer.h"
+#include "gbuffer/shadow_maps.h"
 
 namespace pellucid {
+
+// What transparent casters leave of a light on each pixel of a G-buffer, at the mean of `samples` positions in it, 1
+// being its centre. 1 where nothing was hit.
+//   camera  in whose view space the maps are
+Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, const GBuffer& gbuffer,
+                                  const Camera& camera, int samples);
 
 struct ShadowedLight {
   const Image<glm::vec3>* visibility;  // what passes the transparent things, [0,1]

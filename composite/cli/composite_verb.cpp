@@ -49,9 +49,9 @@ void composite(const CompositeFlags& flags) {
   flags.shadow.check();
   RenderSettings settings;
   settings.listMethod = flags.method.listMethod();
-  settings.stochastic = flags.stochastic.settings(flags.method.method, flags.samples);
+  settings.stochastic = flags.stochastic.settings(flags.method.method, flags.samples, flags.shadow.mapped());
   settings.lookup = flags.lookup.settings();
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.shadow.on());
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.shadow.exact());
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
     throw UsageError(
@@ -87,12 +87,18 @@ void composite(const CompositeFlags& flags) {
                              : !shot->deep.empty() || shot->deepOpaque   ? "deep EXR"
                                                                          : "";
   settings.lowResolution = flags.lowRes.factorFor(shot->scene, listed);
-  const ShadowResult shadows = stages.time("shadows", [&] { return castShadows(flags.shadow, *shot, flags.samples); });
-
   std::unique_ptr<GlContext> context;
+  const auto device = [&]() -> GlContext& {
+    if (!context) stages.time("GL context", [&] { context = std::make_unique<GlContext>(flags.scene.device); });
+    return *context;
+  };
+  const ShadowResult shadows = stages.time("shadows", [&] {
+    return castShadows(flags.shadow, *shot, flags.samples, static_cast<std::uint32_t>(flags.stochastic.seed), device);
+  });
+
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
-    stages.time("GL context", [&] { context = std::make_unique<GlContext>(flags.scene.device); });
+    device();
     stages.time("upload",
                 [&] { pass = std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera); });
   }
@@ -102,13 +108,12 @@ void composite(const CompositeFlags& flags) {
     settings.systems = &systems;
     for (const SystemPass& system : systems) spdlog::info("system {}: at {:.4g} m", system.name, system.z);
   }
-  std::optional<ResolvePass> device;
+  std::optional<ResolvePass> resolver;
   if (flags.lookup.onDevice()) {
     if (settings.sortedTruth || settings.listMethod || settings.stochastic || settings.tolerance ||
         flags.method.isPublished() || shot->deepOpaque || flags.systems != "off")
       throw UsageError(fmt::format("--resolve: found gl with {}, expected cpu: it has no sums to resolve", listed));
-    if (!context) context = std::make_unique<GlContext>(flags.scene.device);
-    settings.device = &device.emplace(*context);
+    settings.device = &resolver.emplace(device());
   }
   flags.foliage.applyTo(settings.pass, pass.get(), gbuffer, shot->camera, stages);
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);

@@ -1,15 +1,19 @@
 #include "composite/cli/shadow_flags.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "composite/shadows.h"
 #include "engine_bridge/embree/shadow_rays.h"
+#include "engine_bridge/gl/shadow_pass.h"
 #include "engine_bridge/scene/blocks.h"
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/view_point.h"
 
 namespace pellucid::cli {
 namespace {
@@ -55,13 +59,7 @@ Image<glm::vec3> multiplierOf(const std::vector<std::size_t>& lights, const std:
     for (int x = 0; x < result.width(); ++x) {
       const float z = gbuffer.viewZ.at(x, y);
       if (!std::isfinite(z)) continue;
-      const glm::dvec2 size(gbuffer.display.width(), gbuffer.display.height());
-      const glm::dvec2 at(gbuffer.data.x0 + x + 0.5 - gbuffer.display.x0,
-                          gbuffer.data.y0 + y + 0.5 - gbuffer.display.y0);
-      const glm::dvec2 ndc(2.0 * at.x / size.x - 1.0, 1.0 - 2.0 * at.y / size.y);
-      const glm::dvec2 atOne = (ndc - shot.camera.centre) / shot.camera.focal;
-      const double zd = z;
-      const glm::dvec3 point = shot.camera.orthographic ? glm::dvec3(atOne, -zd) : glm::dvec3(atOne * zd, -zd);
+      const glm::dvec3 point = viewPoint(gbuffer, shot.camera, x, y);
       glm::vec3 arriving(0.0f), passed(0.0f);
       bool any = false;
       for (std::size_t k = 0; k < lights.size(); ++k) {
@@ -78,6 +76,29 @@ Image<glm::vec3> multiplierOf(const std::vector<std::size_t>& lights, const std:
   return result;
 }
 
+ShadowMapSettings::Form formOf(const std::string& shadows) {
+  using Form = ShadowMapSettings::Form;
+  if (shadows == "stochastic:published") return Form::published;
+  if (shadows == "stochastic:naive") return Form::naive;
+  if (shadows == "stochastic:stratified") return Form::stratified;
+  if (shadows == "stochastic:corrected") return Form::corrected;
+  return Form::variance;
+}
+
+std::shared_ptr<const ShadowMaps> drawMaps(const ShadowFlags& flags, const Shot& shot, std::uint32_t seed,
+                                           GlContext& device) {
+  ShadowMapSettings settings;
+  settings.form = formOf(flags.shadows);
+  settings.size = flags.size;
+  settings.seed = seed;
+  ShadowMapStatistics statistics;
+  auto maps = std::make_shared<const ShadowMaps>(
+      renderShadowMaps(device, shot.scene, shot.camera, &shot.opaque.gbuffer, settings, &statistics));
+  spdlog::info("shadow maps: {} faces, {} MiB, drawn in {:.2f} s, filtered in {:.2f} s", statistics.faces,
+               statistics.bytes >> 20, statistics.drawSeconds, statistics.filterSeconds);
+  return maps;
+}
+
 ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
   ExtraLayer layer{"shadow", {}};
   for (int c = 0; c < 3; ++c) {
@@ -91,11 +112,18 @@ ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
 }  // namespace
 
 void ShadowFlags::addTo(CLI::App& verb) {
-  verb.add_option(
-          "--shadows", shadows,
-          "Shadows of transparent things on the opaque picture, from the glTF's punctual lights; exact: by rays")
-      ->check(CLI::IsMember({"off", "exact"}))
+  verb.add_option("--shadows", shadows,
+                  "Shadows of transparent things on the opaque picture, from the glTF's punctual lights; exact: by rays; "
+                  "stochastic: by prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
+                  "corrected: maps without a filter, percentage closer")
+      ->check(CLI::IsMember({"off", "exact", "stochastic", "stochastic:published", "stochastic:naive",
+                             "stochastic:stratified", "stochastic:corrected"}))
       ->capture_default_str();
+  sizeOption_ = verb.add_option("--shadow-size", size,
+                                "Of --shadows stochastic: texels along an edge of a map as drawn, a multiple of 128; "
+                                "prefiltered maps keep a quarter, faces of point lights have half")
+                    ->check(CLI::Range(128, 16384))
+                    ->capture_default_str();
   verb.add_option("--light", lights,
                   "GLTFNAME=LAYER: the EXR layer with this light's part of the beauty; light.NAME is found by itself")
       ->allow_extra_args(false);
@@ -108,9 +136,13 @@ void ShadowFlags::check() const {
   if (!on() && (!lights.empty() || apply))
     throw UsageError(
         fmt::format("{}: found it without --shadows, expected --shadows exact", apply ? "--apply-shadows" : "--light"));
+  if (sizeOption_ && sizeOption_->count() > 0 && !mapped())
+    throw UsageError(fmt::format("--shadow-size: --shadows {} draws no maps, expected stochastic", shadows));
+  if (size % 128 != 0) throw UsageError(fmt::format("--shadow-size: found {}, expected a multiple of 128", size));
 }
 
-ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples) {
+ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std::uint32_t seed,
+                         const std::function<GlContext&()>& device) {
   ShadowResult result;
   if (!flags.on()) return result;
   if (shot.deepOpaque)
@@ -132,7 +164,11 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples) {
                      [&, &wantedName = name](std::size_t i) { return shot.scene.lights[i].name == wantedName; }))
       throw MeaningError(fmt::format("--light: found no light '{}' in the glTF, expected one of {}", name, names));
 
-  const ShadowRays rays(shot.scene, shot.camera);
+  std::optional<ShadowRays> rays;
+  if (flags.exact())
+    rays.emplace(shot.scene, shot.camera);
+  else
+    result.maps = drawMaps(flags, shot, seed, device());
   std::vector<Image<glm::vec3>> visibility, layers;
   std::vector<std::size_t> without;
   for (const std::size_t i : lit) {
@@ -144,7 +180,8 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples) {
       throw MeaningError(
           fmt::format("{}: --light {}={}: found no such layer with R, G and B in the beauty's window; it has {}", path,
                       name, layer, listNames(nameChannels(shot.opaque.document))));
-    visibility.push_back(rays.visibility(i, shot.opaque.gbuffer, samples));
+    visibility.push_back(rays ? rays->visibility(i, shot.opaque.gbuffer, samples)
+                              : mappedVisibility(*result.maps, i, shot.opaque.gbuffer, shot.camera, samples));
     if (!part) without.push_back(i);
     layers.push_back(part ? std::move(*part) : Image<glm::vec3>());
   }

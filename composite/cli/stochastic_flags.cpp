@@ -29,7 +29,7 @@ void StochasticFlags::addTo(CLI::App& verb) {
                                                "together; without it the first multiple of --aa from {}",
                                                kDefaultSamples))
                        ->check(CLI::Range(1, StochasticSettings::kMostSamples));
-  seedOption_ = verb.add_option("--seed", seed, "Of --method stochastic: another seed, other noise")
+  seedOption_ = verb.add_option("--seed", seed, "Of --method stochastic and --shadows stochastic: another seed, other noise")
                     ->check(CLI::NonNegativeNumber)
                     ->capture_default_str();
   masksOption_ = verb.add_option("--masks", masks, "Of --method stochastic: naive flips a coin per sample")
@@ -41,11 +41,12 @@ void StochasticFlags::addTo(CLI::App& verb) {
                           ->capture_default_str();
 }
 
-std::optional<StochasticSettings> StochasticFlags::settings(const std::string& method, int passes) const {
+std::optional<StochasticSettings> StochasticFlags::settings(const std::string& method, int passes,
+                                                            bool shadows) const {
   const std::optional<Variant> variant = stochasticVariant(method);
   if (!variant) {
     for (const CLI::Option* option : {samplesOption_, seedOption_, masksOption_, correctionOption_})
-      if (option && option->count() > 0)
+      if (option && option->count() > 0 && !(shadows && option == seedOption_))
         throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(), method,
                                      kStochasticNames));
     return std::nullopt;

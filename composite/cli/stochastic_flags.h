@@ -17,8 +17,9 @@ struct StochasticFlags {
   std::string masks = "stratified", correction = "on";
   void addTo(CLI::App& verb);
   // Nothing for other methods. Throws UsageError for flags that the method cannot honour.
-  //   passes  --aa; the masks are stratified across all of them
-  std::optional<StochasticSettings> settings(const std::string& method, int passes) const;
+  //   passes   --aa; the masks are stratified across all of them
+  //   shadows  drawn at random too: --seed is theirs
+  std::optional<StochasticSettings> settings(const std::string& method, int passes, bool shadows = false) const;
 
  private:
   CLI::Option *samplesOption_ = nullptr, *seedOption_ = nullptr, *masksOption_ = nullptr, *correctionOption_ = nullptr;

@@ -9,6 +9,7 @@
 #include "engine_bridge/embree/sampling.h"
 #include "engine_bridge/embree/surface_sampler.h"
 #include "engine_bridge/embree/transparent_scene.h"
+#include "gbuffer/depth_plane.h"
 
 namespace pellucid {
 namespace {
@@ -18,28 +19,6 @@ using namespace rays;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A point known by a float depth is off by some units in its last place.
 constexpr double kLift = 8e-6;
-
-// The depth of a pixel and how it changes across it. 1/z is linear on a plane; of the two neighbours the one that
-// changes less lies on the same surface.
-struct DepthPlane {
-  double inverse = 0, across = 0, down = 0;
-  double z(glm::dvec2 offset) const { return 1.0 / (inverse + across * offset.x + down * offset.y); }
-};
-
-double slope(const Image<float>& viewZ, int x, int y, int dx, int dy) {
-  const double here = 1.0 / static_cast<double>(viewZ.at(x, y));
-  double best = 0, least = kInfinity;
-  for (const int side : {-1, 1}) {
-    const int u = x + side * dx, v = y + side * dy;
-    if (u < 0 || v < 0 || u >= viewZ.width() || v >= viewZ.height() || !std::isfinite(viewZ.at(u, v))) continue;
-    const double change = side * (1.0 / static_cast<double>(viewZ.at(u, v)) - here);
-    if (std::abs(change) < least) {
-      least = std::abs(change);
-      best = change;
-    }
-  }
-  return best;
-}
 
 }  // namespace
 
@@ -126,14 +105,14 @@ Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffe
     for (int x = 0; x < viewZ.width(); ++x) {
       const float z = viewZ.at(x, y);
       if (!std::isfinite(z)) continue;
-      const DepthPlane plane{1.0 / static_cast<double>(z), slope(viewZ, x, y, 1, 0), slope(viewZ, x, y, 0, 1)};
+      const DepthPlane plane = depthPlaneAt(viewZ, x, y);
       const glm::dvec2 centre(gbuffer.data.x0 + x + 0.5, gbuffer.data.y0 + y + 0.5);
       glm::dvec3 sum(0.0);
       for (int i = 0; i < samples; ++i) {
         glm::dvec2 offset(0.0);
         // One set of positions for all pixels: a straight edge then has one look along its length.
         if (samples > 1) offset = glm::dvec2(samplePoint(static_cast<std::uint32_t>(i), 0)) - 0.5;
-        const double depth = plane.z(offset);
+        const double depth = plane.z(offset.x, offset.y);
         const Ray ray = rays.through(centre + (depth > 0.0 ? offset : glm::dvec2(0.0)));
         const glm::dvec3 point = ray.origin + (depth > 0.0 ? depth : static_cast<double>(z)) * ray.direction;
         sum += glm::dvec3(impl_->visibility(light, point, crossings));

@@ -49,11 +49,11 @@ std::size_t ChunkData::bytes() const {
   return vertices.size() * sizeof(Vertex) + (indices.size() + triangleNumbers.size()) * sizeof(std::uint32_t);
 }
 
-ChunkCutter::ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes)
+ChunkCutter::ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes, bool opaque)
     : scene_(scene), order_(order), chunkBytes_(chunkBytes) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(scene.instances[i].primitive));
-    if (!scene.materials.at(static_cast<std::size_t>(primitive.material)).transparent()) continue;
+    if (scene.materials.at(static_cast<std::size_t>(primitive.material)).transparent() == opaque) continue;
     const std::uint32_t triangles = trianglesOf(primitive);
     const std::uint32_t step = order.kind == SubmissionOrder::shuffle ? kShuffledRun : std::max(triangles, 1u);
     for (std::uint32_t first = 0; first < triangles; first += step)
@@ -138,7 +138,7 @@ bool ChunkCutter::next(ChunkData& chunk) {
   return !chunk.draws.empty();
 }
 
-GeometryStream::GeometryStream(const Scene& scene) : scene_(scene) {}
+GeometryStream::GeometryStream(const Scene& scene, bool opaque) : scene_(scene), opaque_(opaque) {}
 
 GeometryStream::Slot GeometryStream::makeSlot() const {
   Slot slot;
@@ -188,7 +188,7 @@ void GeometryStream::sweep(SubmissionOrder order, std::size_t budgetBytes,
   // One share is the copy being cut; the rest lie in slots.
   const std::size_t chunkBytes = std::min(budgetBytes / (kFewestSlots + 1), kMostChunkBytes);
   const std::size_t slots = std::max(kFewestSlots, budgetBytes / std::max<std::size_t>(chunkBytes, 1) - 1);
-  ChunkCutter cutter(scene_, order, chunkBytes);
+  ChunkCutter cutter(scene_, order, chunkBytes, opaque_);
   // Room at once: what grows is copied, and for a while there twice. Pages without use are not there at all.
   staging_.vertices.reserve(chunkBytes / sizeof(Vertex));
   staging_.indices.reserve(chunkBytes / kTriangleBytes * 3);

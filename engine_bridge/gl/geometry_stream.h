@@ -28,10 +28,10 @@ struct ChunkData {
   std::size_t bytes() const;
 };
 
-// Walks the transparent triangles once. next() fills one chunk of at most `chunkBytes` (but at least one triangle).
+// Walks the transparent triangles, or the opaque ones, once. next() fills one chunk of at most `chunkBytes` (but at least one triangle).
 class ChunkCutter {
  public:
-  ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes);
+  ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes, bool opaque = false);
   bool next(ChunkData& chunk);
 
  private:
@@ -59,7 +59,7 @@ class ChunkCutter {
 
 class GeometryStream {
  public:
-  explicit GeometryStream(const Scene& scene);
+  explicit GeometryStream(const Scene& scene, bool opaque = false);
 
   // Calls `draw` for each chunk in submission order, with an empty vertex array bound, and its buffers as storage
   // blocks 2 (triangle numbers), 5 (vertices) and 6 (indices). Chunks already resident from the last sweep with the
@@ -81,6 +81,7 @@ class GeometryStream {
   void present(Slot& slot, const std::function<void(const std::vector<ChunkDraw>&)>& draw);
 
   const Scene& scene_;
+  bool opaque_;
   std::vector<Slot> slots_;
   SubmissionOrder residentOrder_;
   std::size_t residentBudget_ = 0;

@@ -93,6 +93,14 @@ struct TextureKind {
   }
   static void destroy(GLuint name) { glDeleteTextures(1, &name); }
 };
+struct BufferTextureKind {
+  static GLuint create() {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
+    return name;
+  }
+  static void destroy(GLuint name) { glDeleteTextures(1, &name); }
+};
 struct SamplerKind {
   static GLuint create() {
     GLuint name = 0;
@@ -124,6 +132,7 @@ struct ProgramKind {
 
 using Buffer = Handle<BufferKind>;
 using Texture = Handle<TextureKind>;
+using BufferTexture = Handle<BufferTextureKind>;
 using Sampler = Handle<SamplerKind>;
 using Framebuffer = Handle<FramebufferKind>;
 using VertexArray = Handle<VertexArrayKind>;

@@ -1,0 +1,56 @@
+#include "engine_bridge/gl/shadow_filter.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace pellucid::gl {
+namespace {
+
+glm::vec4 texelOf(const DrawnBand& band, int channels, int channel, int x, int y) {
+  const glm::vec4& nearest = band.nearest.at(x, y);
+  return shading::shadowTexelOf(nearest[channel], channels == 1 ? nearest.a : band.steps.at(x, y)[channel]);
+}
+
+}  // namespace
+
+void shadowTexels(const DrawnBand& band, int channels, glm::vec4* out) {
+  const int width = band.nearest.width();
+  tbb::parallel_for(0, band.nearest.height(), [&](int y) {
+    glm::vec4* row = out + static_cast<std::ptrdiff_t>(y) * width * channels;
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < channels; ++c) *row++ = texelOf(band, channels, c, x, y);
+  });
+}
+
+void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::vec4* out) {
+  const int width = edge / kShadowDivide, height = band.nearest.height();
+  const auto stride = static_cast<std::size_t>(width * channels);
+  std::vector<glm::vec4> across(stride * static_cast<std::size_t>(height));
+  tbb::parallel_for(0, height, [&](int y) {
+    std::vector<glm::vec4> texels(static_cast<std::size_t>(edge));
+    for (int c = 0; c < channels; ++c) {
+      for (int x = 0; x < edge; ++x) texels[static_cast<std::size_t>(x)] = texelOf(band, channels, c, x, y);
+      for (int x = 0; x < width; ++x) {
+        glm::vec4 sum(0.0f);
+        const int middle = kShadowDivide * x + kShadowDivide / 2;
+        for (int i = -kTentReach; i <= kTentReach; ++i)
+          if (middle + i >= 0 && middle + i < edge)
+            sum += shading::shadowTent(i) * texels[static_cast<std::size_t>(middle + i)];
+        across[stride * static_cast<std::size_t>(y) + static_cast<std::size_t>(x * channels + c)] = sum;
+      }
+    }
+  });
+  tbb::parallel_for(0, rows, [&](int y) {
+    glm::vec4* row = out + stride * static_cast<std::size_t>(y);
+    std::fill(row, row + stride, glm::vec4(0.0f));
+    for (int j = -kTentReach; j <= kTentReach; ++j) {
+      const int from = kShadowDivide * y + kShadowDivide / 2 + j + kTentReach;
+      if (from >= height) continue;
+      const glm::vec4* drawn = &across[stride * static_cast<std::size_t>(from)];
+      for (std::size_t i = 0; i < stride; ++i) row[i] += shading::shadowTent(j) * drawn[i];
+    }
+  });
+}
+
+}  // namespace pellucid::gl

@@ -1,0 +1,28 @@
+// Texels of shadow maps from what a face's passes have drawn, band by band.
+#pragma once
+#include <vector>
+
+#include "gbuffer/image.h"
+#include "shaders/shadow_map.h"
+
+namespace pellucid::gl {
+
+constexpr int kTentReach = 7;     // texels on either side of a tent's middle
+constexpr int kShadowDivide = 4;  // prefiltered maps keep one texel of so many, in both dimensions
+
+// Of a band as drawn: nearest depth and optical depth per channel, `steps` in alpha of `nearest` for one channel.
+struct DrawnBand {
+  Image<glm::vec4> nearest, steps;  // steps empty for one channel
+};
+
+// Unfiltered texels of a band.
+void shadowTexels(const DrawnBand& band, int channels, glm::vec4* out);
+
+// Tent-filtered texels at a quarter of the resolution. Texel X has its tent's middle on drawn texel 4 X + 2; beyond the
+// face nothing is drawn.
+//   band     of the face's rows from firstRow - kTentReach, as many as its image has
+//   edge     of the face as drawn
+//   rows     of the result, each of edge / 4 texels
+void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::vec4* out);
+
+}  // namespace pellucid::gl

@@ -1,0 +1,41 @@
+// One fragment of a transparent caster, as its light sees it: the nearest depth by the coins, and what it hides.
+#include "gl/frame.glsl"
+#include "gl/material.glsl"
+#include "gl/exact_cut.glsl"
+#include "gl/shadow_frame.glsl"
+#include "shared/shadow_map.glsl"
+layout(location = 4) flat in uint triangleNumber;  // within the primitive
+uniform uint instanceIdentity;
+
+layout(location = 0) out vec4 nearest;  // MIN; alpha adds
+#ifndef GREY
+layout(location = 1) out vec4 steps;    // adds
+#endif
+
+void main() {
+  Surface surface = surfaceHere();
+  if (outsideTriangle()) discard;
+  if (!(-viewPosition.z > 0.0f) || !(surface.coverage > 0.0f)) discard;
+  float depth = mapDepthOf(viewPosition);
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  if (depth > texelFetch(opaqueZ, texel, 0).r + metric.w) discard;
+
+  vec3 toLight = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
+  vec3 normal = normalTowardsEye(viewNormal, gl_FrontFacing, toLight);
+  float cosLight = clamp(abs(dot(normal, toLight)), PLD_GRAZING, 1.0f);
+  vec3 rho = casterDensity(surface, cosLight, material.scattering.z);
+
+  uvec2 place = uvec2(texel) + texels.xy;
+  uint key = casterKeyOf(identityOf(instanceIdentity, triangleNumber), texels.w);
+  uint xi = texels.z != 0u ? naiveXi(place, key) : stratifiedXi(place, key);
+  nearest.r = casts(rho.r, xi) ? depth : PLD_SHADOW_NOTHING;
+  nearest.g = casts(rho.g, xi) ? depth : PLD_SHADOW_NOTHING;
+  nearest.b = casts(rho.b, xi) ? depth : PLD_SHADOW_NOTHING;
+  uint rounding = naiveXi(place, hashOf(key));
+#ifdef GREY
+  nearest.a = steppedDepth(rho.r, rounding);
+#else
+  nearest.a = 0.0f;
+  steps = vec4(steppedDepth(rho.r, rounding), steppedDepth(rho.g, rounding), steppedDepth(rho.b, rounding), 0.0f);
+#endif
+}
