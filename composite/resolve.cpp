@@ -8,15 +8,10 @@
 #include <limits>
 
 #include "composite/denormals.h"
+#include "shaders/picture.h"
 
 namespace pellucid {
 namespace {
-
-// 0 hides even what is not finite; for finite light this changes no bit.
-glm::vec3 through(const glm::vec3& transmission, const glm::vec3& light) {
-  return {transmission.r > 0.0f ? light.r : 0.0f, transmission.g > 0.0f ? light.g : 0.0f,
-          transmission.b > 0.0f ? light.b : 0.0f};
-}
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 const glm::vec4 kNoSolid(0.0f, 0.0f, 0.0f, kNothing);
@@ -87,7 +82,7 @@ void showThrough(const Lookups& lookups, Veil& veil) {
         const glm::vec3 transmission = veil.transmission.at(x, y);
         const glm::vec4 background = lookups.at(x, y);
         veil.direct.at(x, y) = glm::vec3(0.0f);
-        veil.applied.at(x, y) = glm::vec4(transmission * through(transmission, glm::vec3(background)),
+        veil.applied.at(x, y) = glm::vec4(transmission * shading::throughOnly(transmission, glm::vec3(background)),
                                           shading::meanOf(transmission) * (1.0f - background.a));
       }
   });
@@ -116,13 +111,8 @@ Picture compose(const Veil& veil, const GBuffer& background) {
         resolved.transparent = veil.light.at(x, y);
         resolved.transmission = veil.transmission.at(x, y);
         if (veil.scatters()) resolved.transmission = veil.direct.at(x, y);
-        glm::vec3 colour = shading::overBackground(resolved, through(resolved.transmission, glm::vec3(pixel)));
-        float alpha = shading::alphaOver(resolved.transmission, pixel.a);
-        if (veil.scatters()) {
-          colour += glm::vec3(veil.applied.at(x, y));
-          alpha -= veil.applied.at(x, y).a;
-        }
-        pixel = glm::vec4(colour, alpha);
+        const glm::vec4 applied = veil.scatters() ? veil.applied.at(x, y) : glm::vec4(0.0f);
+        pixel = shading::pictureOver(resolved, pixel, applied);
       }
   });
   return picture;

@@ -56,3 +56,35 @@ void writeScatter(Layer layer, Scatter scatter, vec4 dispersion) {
 #endif
 }
 #endif
+
+#if defined(FRONT_TAIL)
+// A fragment that goes elsewhere.
+void writeNothing() {
+  radianceSum = vec4(0.0f);
+  opacitySum = vec4(0.0f);
+  lightSum = vec4(0.0f);
+#ifdef GREY
+  depthSum = vec2(0.0f);
+#else
+  weightSum = vec4(0.0f);
+  depthSum = vec4(0.0f);
+#endif
+  nearestZ = intBitsToFloat(0x7f800000);
+}
+#endif
+
+#ifdef HALF
+// To the largest half: infinity would make a NaN of a mean.
+void clampToHalf() {
+  const float largest = 65504.0f;
+  radianceSum = min(radianceSum, vec4(largest));
+  opacitySum = min(opacitySum, vec4(largest));
+  lightSum = min(lightSum, vec4(largest));
+#ifndef GREY
+  weightSum = min(weightSum, vec4(largest));
+#endif
+#ifdef SCATTER
+  refractionSum = clamp(refractionSum, vec4(-largest), vec4(largest));
+#endif
+}
+#endif

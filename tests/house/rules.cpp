@@ -30,7 +30,7 @@ struct Library {
 };
 const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl"}},
                               {"EGL/", {"engine_bridge/gl"}},
-                              {"GL/", {"engine_bridge/gl"}},
+                              {"GL/", {"engine_bridge/gl", "engine_bridge/c"}},
                               {"embree3/", {"engine_bridge/embree"}},
                               {"OpenEXR/", {"gbuffer", "samples/generate"}}};
 

@@ -1,0 +1,27 @@
+// The shaders of shaders/gl as text for GLSL 3.30 to 4.60, for the library's own programs and for the host's.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine_bridge/c/permutation.h"
+
+namespace pellucid::c {
+
+struct SamplerUnit {
+  std::string name;
+  int unit;
+};
+
+struct OwnText {
+  std::string text;  // with its #version line
+  std::vector<SamplerUnit> samplers;
+};
+
+// A stage of the library's own.
+OwnText ownText(const std::string& file, const std::vector<std::string>& defines, int version);
+
+// The seam, without a #version line. Names that the host does not call begin with pld_, so that they meet none of its own.
+//   version  of GLSL, 330 to 460; below 420 units and binding are left to pld_connect()
+std::string seamText(const Permutation& permutation, pld_stage stage, int version, int uniformBinding, int firstUnit);
+
+}  // namespace pellucid::c

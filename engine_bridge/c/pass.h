@@ -1,0 +1,82 @@
+// One view's planes and the calls that work on them. What crosses the C boundary is pass_calls.cpp's.
+#pragma once
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "engine_bridge/c/permutation.h"
+#include "engine_bridge/c/programs.h"
+#include "engine_bridge/c/saved_state.h"
+#include "engine_bridge/c/timers.h"
+
+struct pld_pass {
+  std::atomic_flag busy = ATOMIC_FLAG_INIT;
+  char message[512] = {};
+
+  // Each leaves GL as it was unless it returns PLD_OK, and begin() until end().
+  pld_status create(const pld_create_info& info);
+  pld_status resize(int width, int height);
+  pld_status begin(pld_stage stage, const pld_frame& frame);
+  pld_status end();
+  pld_status resolve(const pld_target& target);
+  pld_status query(pld_value what, uint64_t& value);
+  pld_status seam(pld_stage stage, int version, const char*& text);
+  pld_status connect(GLuint program);
+  void destroyObjects();
+
+  bool isCurrent() const;
+  // Says why, to the message and to the log.
+  [[gnu::format(printf, 3, 4)]] pld_status fail(pld_status status, const char* format, ...);
+  void say(pld_log_level level, const char* text) const;
+
+ private:
+  static constexpr int kLevels = 25, kSpreadPlanes = 5, kStages = 3;
+  enum class Step { sizeless, between, open, drawn };  // of a frame; drawn: a stage ended, no resolve yet
+
+  struct Plane {
+    pellucid::c::PlaneSpec spec;
+    GLuint texture = 0;
+  };
+
+  pld_status checkFrame(const pld_frame& frame, GLenum& depthAttachment);
+  pld_status checkOrder(pld_stage stage);
+  void setFrame(const pld_frame& frame);
+  void drawPlanarDepth(const pld_frame& frame);
+  void openStage(pld_stage stage);
+  void clearStage(pld_stage stage);
+  void drawPyramid();
+  void bind(GLuint unit, GLuint texture);
+  void useProgram(const pellucid::c::Program& program);
+  GLuint makeTexture(GLenum format, int width, int height, int bits);
+  pld_status makeTextures(int width, int height);
+  void layOutPyramid(int width, int height);
+  void releaseTextures();
+  pld_status makePrograms();
+  pellucid::c::Units unitsOf() const;
+  uint32_t stagesNeeded() const;
+  void pushGroup(const char* name);
+  void popGroup();
+
+  pellucid::c::GlFunctions gl;
+  pld_create_info info_{};
+  pellucid::c::Permutation permutation_;
+  pellucid::c::SavedState saved_;
+  pellucid::c::Timers timers_;
+  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_;
+  GLuint vertexArray_ = 0, sampler_ = 0, uniforms_ = 0;
+  GLuint layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
+  std::vector<Plane> planes_;
+  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {};
+  GLint levels_[kLevels][4] = {};
+  int levelCount_ = 0, atlasWidth_ = 0, atlasHeight_ = 0;
+  uint64_t bytes_ = 0;
+  int width_ = 0, height_ = 0;
+  char label_[64] = {};
+  std::string seams_[kStages];
+
+  Step step_ = Step::sizeless;
+  pld_stage stage_ = PLD_STAGE_LAYERS;
+  uint32_t stagesDone_ = 0;
+  pld_frame frame_{};
+  GLenum frameDepthAttachment_ = 0;
+};

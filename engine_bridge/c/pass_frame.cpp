@@ -1,0 +1,328 @@
+// A frame: begin, the host's draws, end, for every stage; then the resolve.
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "engine_bridge/c/pass.h"
+#include "engine_bridge/c/textures.h"
+
+using namespace pellucid::c;
+
+namespace {
+
+bool isPositive(float x) {
+  return x > 0.0f && std::isfinite(x);
+}
+
+bool isPerspective(const float* p) {
+  return p[3] == 0.0f && p[7] == 0.0f && p[11] == -1.0f && p[15] == 0.0f;
+}
+bool isOrthographic(const float* p) {
+  return p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
+}
+
+constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers"};
+
+}  // namespace
+
+pld_status pld_pass::checkOrder(pld_stage stage) {
+  if (step_ == Step::sizeless) return fail(PLD_ERROR_ORDER, "pld_begin: before pld_resize");
+  if (step_ == Step::open) return fail(PLD_ERROR_ORDER, "pld_begin: the last stage has not met its pld_end");
+  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LAYERS)
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: found stage %d, which pld_stage does not have", static_cast<int>(stage));
+  const uint32_t needed = stagesNeeded(), bit = 1u << stage;
+  if (!(needed & bit)) return fail(PLD_ERROR_ORDER, "pld_begin: this pass has no stage %d", static_cast<int>(stage));
+  const uint32_t before = needed & (bit - 1);
+  if (before != 0 && (stagesDone_ & before) != before)
+    return fail(PLD_ERROR_ORDER, "pld_begin: stage %d comes after those before it", static_cast<int>(stage));
+  if (before != 0 && (stagesDone_ & bit))
+    return fail(PLD_ERROR_ORDER, "pld_begin: stage %d again in one frame", static_cast<int>(stage));
+  return PLD_OK;
+}
+
+pld_status pld_pass::checkFrame(const pld_frame& frame, GLenum& attachment) {
+  if (frame.struct_size != sizeof(pld_frame))
+    return fail(PLD_ERROR_VERSION, "pld_begin: frame.struct_size: found %u, expected %zu", frame.struct_size, sizeof(pld_frame));
+  if (frame.width < 1 || frame.height < 1 || frame.width > width_ || frame.height > height_)
+    return fail(PLD_ERROR_SIZE, "pld_begin: frame: found %dx%d, expected at most pld_resize()'s %dx%d", frame.width,
+                frame.height, width_, height_);
+  for (const float x : frame.projection)
+    if (!std::isfinite(x)) return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.projection holds a number that is not finite");
+  if (!isPerspective(frame.projection) && !isOrthographic(frame.projection))
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.projection: expected perspective with w = -z, or orthographic, by columns");
+  if (frame.projection[0] == 0.0f || frame.projection[5] == 0.0f)
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.projection: a focal length of 0");
+  if (!isPositive(frame.metres_per_unit) || !isPositive(frame.pre_exposure))
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: metres_per_unit %g, pre_exposure %g: expected both > 0",
+                static_cast<double>(frame.metres_per_unit), static_cast<double>(frame.pre_exposure));
+  if (!isPositive(frame.weight_near) || !(frame.weight_far > frame.weight_near) || !std::isfinite(frame.weight_far) ||
+      !std::isfinite(frame.weight_exponent))
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: weight range %g to %g, exponent %g: expected 0 < near < far and a number",
+                static_cast<double>(frame.weight_near), static_cast<double>(frame.weight_far),
+                static_cast<double>(frame.weight_exponent));
+  if (frame.refract < PLD_REFRACT_NOTHING || frame.refract > PLD_REFRACT_THROUGH_SLAB)
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: found refract %d, which pld_refract does not have", static_cast<int>(frame.refract));
+  if (permutation_.scatters() && (!isPositive(frame.refract_distance) || !(frame.diffusion_k0 >= 0.0f) ||
+                                  !std::isfinite(frame.diffusion_k0) || !isPositive(frame.diffusion_k1)))
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: refract_distance %g, diffusion_k0 %g, diffusion_k1 %g: expected > 0, >= 0, > 0",
+                static_cast<double>(frame.refract_distance), static_cast<double>(frame.diffusion_k0),
+                static_cast<double>(frame.diffusion_k1));
+  if (frame.colour_texture == frame.depth_texture)
+    return fail(PLD_ERROR_TEXTURE, "pld_begin: colour_texture and depth_texture are one texture, %u", frame.depth_texture);
+
+  TextureFacts colour, depth;
+  if (!factsOf(gl, frame.colour_texture, colour))
+    return fail(PLD_ERROR_TEXTURE, "pld_begin: colour_texture %u is no 2D texture of this context", frame.colour_texture);
+  if (!factsOf(gl, frame.depth_texture, depth))
+    return fail(PLD_ERROR_TEXTURE, "pld_begin: depth_texture %u is no 2D texture of this context", frame.depth_texture);
+  if (!isColour(colour.format))
+    return fail(PLD_ERROR_FORMAT, "pld_begin: colour_texture has format 0x%x, expected RGB or RGBA", static_cast<unsigned>(colour.format));
+  attachment = permutation_.depth == PLD_DEPTH_LINEAR ? 0 : depthAttachment(depth.format);
+  if (permutation_.depth == PLD_DEPTH_LINEAR ? !isLinearDepth(depth.format) : attachment == 0)
+    return fail(PLD_ERROR_FORMAT, "pld_begin: depth_texture has format 0x%x, expected %s", static_cast<unsigned>(depth.format),
+                permutation_.depth == PLD_DEPTH_LINEAR ? "a float colour format" : "a depth format");
+  if (colour.width < frame.width || colour.height < frame.height || depth.width < frame.width || depth.height < frame.height)
+    return fail(PLD_ERROR_SIZE, "pld_begin: colour_texture %dx%d, depth_texture %dx%d: expected at least the frame's %dx%d",
+                colour.width, colour.height, depth.width, depth.height, frame.width, frame.height);
+  if (stagesDone_ != 0 && step_ == Step::drawn && stage_ != PLD_STAGE_LAYERS &&
+      (frame.width != frame_.width || frame.height != frame_.height))
+    return fail(PLD_ERROR_SIZE, "pld_begin: found %dx%d, expected the %dx%d of this frame's first stage", frame.width,
+                frame.height, frame_.width, frame_.height);
+  return PLD_OK;
+}
+
+void pld_pass::setFrame(const pld_frame& frame) {
+  const float halfWidth = 0.5f * static_cast<float>(frame.width), halfHeight = 0.5f * static_cast<float>(frame.height);
+  const bool orthographic = isOrthographic(frame.projection);
+  // Offsets are in pixels a metre where nothing converges.
+  const float scale = orthographic ? 1.0f / frame.metres_per_unit : 1.0f;
+  const GLfloat block[16] = {frame.weight_near,
+                             frame.weight_far,
+                             frame.weight_exponent,
+                             frame.metres_per_unit,
+                             frame.pre_exposure,
+                             info_.rows == PLD_ROWS_DOWN ? 1.0f : -1.0f,
+                             orthographic ? 1.0f : 0.0f,
+                             1.0f,
+                             static_cast<float>(frame.refract),
+                             frame.refract_distance,
+                             std::fabs(frame.projection[0]) * halfWidth * scale,
+                             std::fabs(frame.projection[5]) * halfHeight * scale,
+                             frame.diffusion_k0,
+                             frame.diffusion_k1,
+                             0.0f,
+                             0.0f};
+  gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_);
+  gl.BufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(block), block);
+}
+
+void pld_pass::useProgram(const Program& program) {
+  gl.UseProgram(program.name);
+  gl.BindVertexArray(vertexArray_);
+}
+
+void pld_pass::drawPlanarDepth(const pld_frame& frame) {
+  setPlainDrawing(gl, frame.width, frame.height);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, planarFrame_);
+  bind(0, frame.depth_texture);
+  useProgram(planarDepth_);
+  const float* p = frame.projection;
+  const bool zeroToOne = info_.clip == PLD_CLIP_ZERO_TO_ONE;
+  gl.Uniform4f(planarDepth_.place(gl, "depthRows"), p[10], p[14], p[11], p[15]);
+  gl.Uniform4f(planarDepth_.place(gl, "depthReads"), zeroToOne ? 1.0f : 2.0f, zeroToOne ? 0.0f : -1.0f,
+               permutation_.depth == PLD_DEPTH_REVERSED ? 0.0f : 1.0f, frame.metres_per_unit);
+  gl.Uniform1i(planarDepth_.place(gl, "depthIsLinear"), permutation_.depth == PLD_DEPTH_LINEAR ? 1 : 0);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+// The bound framebuffer's planes, empty.
+void pld_pass::clearStage(pld_stage stage) {
+  constexpr float far = std::numeric_limits<float>::infinity();
+  const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f;
+  if (stage == PLD_STAGE_LAYERS)
+    for (const Plane& plane : planes_) gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
+  if (stage == PLD_STAGE_FRONT) gl.ClearBufferfv(GL_COLOR, 0, nowhere);
+  if (stage == PLD_STAGE_SOLIDS) {
+    gl.DepthMask(GL_TRUE);
+    gl.ClearBufferfv(GL_COLOR, 0, noSolid);
+    gl.ClearBufferfv(GL_DEPTH, 0, &infinitelyFar);
+  }
+}
+
+void pld_pass::openStage(pld_stage stage) {
+  const auto blend = [&](GLuint i, BlendKind kind) {
+    gl.Enablei(GL_BLEND, i);
+    const bool product = kind == BlendKind::product;
+    gl.BlendFuncSeparatei(i, product ? GL_ZERO : GL_ONE, product ? GL_ONE_MINUS_SRC_COLOR : GL_ONE, GL_ONE, GL_ONE);
+    const GLenum equation = kind == BlendKind::minimum ? GL_MIN : GL_FUNC_ADD;
+    gl.BlendEquationSeparatei(i, equation, equation);
+  };
+  if (stage == PLD_STAGE_LAYERS)
+    for (const Plane& plane : planes_) blend(plane.spec.attachment, plane.spec.blend);
+  if (stage == PLD_STAGE_FRONT) blend(0, BlendKind::minimum);
+  if (stage == PLD_STAGE_SOLIDS) {
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_GREATER);
+  } else if (permutation_.depth != PLD_DEPTH_LINEAR) {
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(permutation_.depth == PLD_DEPTH_REVERSED ? GL_GEQUAL : GL_LEQUAL);
+  }
+  bind(info_.texture_unit, planarZ_);
+  bind(info_.texture_unit + 1, solid_);
+  bind(info_.texture_unit + 2, frontZ_);
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, info_.uniform_binding, uniforms_);
+}
+
+pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
+  if (const pld_status status = checkOrder(stage); status != PLD_OK) return status;
+  GLenum attachment = 0;
+  if (const pld_status status = checkFrame(frame, attachment); status != PLD_OK) return status;
+  const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
+  const bool first = (stagesNeeded() & ((1u << stage) - 1)) == 0;
+  // Unit 0 is used by the depth pass, the seam's units by the stage.
+  const auto seamUnit = static_cast<int>(info_.texture_unit);
+  if (saves) saved_.save(gl, {0, seamUnit + 3}, static_cast<int>(info_.uniform_binding));
+  const GLuint target = stage == PLD_STAGE_LAYERS ? layersFrame_ : stage == PLD_STAGE_FRONT ? frontFrame_ : solidFrame_;
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+  frameDepthAttachment_ = stage == PLD_STAGE_SOLIDS ? 0 : attachment;
+  if (frameDepthAttachment_) {
+    gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, frame.depth_texture, 0);
+    if (gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, 0, 0);
+      if (saves) saved_.restore(gl);
+      return fail(PLD_ERROR_FORMAT, "pld_begin: this device cannot test against depth_texture %u", frame.depth_texture);
+    }
+  }
+  pushGroup(kStageNames[stage]);
+  if (first) {
+    timers_.nextFrame();
+    stagesDone_ = 0;
+  }
+  timers_.mark(gl, Timers::markOf(stage, 0));
+  setFrame(frame);
+  if (first && permutation_.planarDepth()) {
+    drawPlanarDepth(frame);
+    if (saves) saved_.restoreShape(gl);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+  }
+  setAccumulation(gl, frame.width, frame.height);
+  clearStage(stage);
+  openStage(stage);
+  timers_.mark(gl, Timers::markOf(stage, 1));
+  frame_ = frame;
+  stage_ = stage;
+  step_ = Step::open;
+  return PLD_OK;
+}
+
+pld_status pld_pass::end() {
+  if (step_ != Step::open) return fail(PLD_ERROR_ORDER, "pld_end: without a pld_begin");
+  timers_.mark(gl, Timers::markOf(stage_, 2));
+  if (frameDepthAttachment_) {
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, stage_ == PLD_STAGE_LAYERS ? layersFrame_ : frontFrame_);
+    gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, 0, 0);
+  }
+  if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
+  popGroup();
+  stagesDone_ |= 1u << stage_;
+  step_ = Step::drawn;
+  return PLD_OK;
+}
+
+// A texel of one level reads those of the one below it, of the same textures: a barrier lies between the draws.
+void pld_pass::drawPyramid() {
+  layOutPyramid(frame_.width, frame_.height);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, spreadFrame_);
+  useProgram(spreadLevel_);
+  gl.Uniform4iv(spreadLevel_.place(gl, "spreadLevels"), kLevels, &levels_[0][0]);
+  gl.Uniform2i(spreadLevel_.place(gl, "pictureSize"), frame_.width, frame_.height);
+  const GLint level = spreadLevel_.place(gl, "level");
+  for (int k = 1; k <= levelCount_; ++k) {
+    setViewportTo(gl, 0, levels_[k][2], levels_[k][0], levels_[k][1]);
+    gl.Uniform1i(level, k);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl.TextureBarrier();
+  }
+}
+
+pld_status pld_pass::resolve(const pld_target& target) {
+  if (step_ != Step::drawn || stagesDone_ != stagesNeeded())
+    return fail(PLD_ERROR_ORDER, "pld_resolve: before all stages of a frame have met their pld_end");
+  if (target.struct_size != sizeof(pld_target))
+    return fail(PLD_ERROR_VERSION, "pld_resolve: target.struct_size: found %u, expected %zu", target.struct_size, sizeof(pld_target));
+  if (target.view < PLD_VIEW_PICTURE || target.view > PLD_VIEW_SOLID)
+    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found view %d, which pld_view does not have", static_cast<int>(target.view));
+  if (target.view != PLD_VIEW_PICTURE && !view_.name)
+    return fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: views need PLD_FLAG_DEBUG_VIEWS");
+  TextureFacts colour, facts;
+  if (!factsOf(gl, frame_.colour_texture, colour) || colour.width < frame_.width || colour.height < frame_.height)
+    return fail(PLD_ERROR_TEXTURE, "pld_resolve: colour_texture %u is no longer what pld_begin saw", frame_.colour_texture);
+  const bool toTexture = target.kind == PLD_TARGET_TEXTURE;
+  if (!toTexture && target.kind != PLD_TARGET_FRAMEBUFFER)
+    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found kind %d, which pld_target_kind does not have", static_cast<int>(target.kind));
+  if (toTexture) {
+    if (!factsOf(gl, target.name, facts))
+      return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is no 2D texture of this context", target.name);
+    if (target.name == frame_.colour_texture)
+      return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is the frame's colour_texture, which is read meanwhile", target.name);
+    for (const Plane& plane : planes_)
+      if (plane.texture == target.name) return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is a plane of this pass", target.name);
+    if (!isColour(facts.format))
+      return fail(PLD_ERROR_FORMAT, "pld_resolve: target has format 0x%x, expected RGB or RGBA", static_cast<unsigned>(facts.format));
+    if (facts.width < frame_.width || facts.height < frame_.height)
+      return fail(PLD_ERROR_SIZE, "pld_resolve: target is %dx%d, expected at least the frame's %dx%d", facts.width,
+                  facts.height, frame_.width, frame_.height);
+  } else if (target.name != 0 && !gl.IsFramebuffer(target.name)) {
+    return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is no framebuffer of this context", target.name);
+  }
+
+  const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
+  if (saves) saved_.save(gl, unitsOf(), -1);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, toTexture ? targetFrame_ : target.name);
+  if (toTexture) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name, 0);
+  GLint attached = 0, kind = 0;
+  if (!toTexture && target.name != 0) {
+    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
+    if (kind == GL_TEXTURE)
+      gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &attached);
+  }
+  const bool own = attached != 0 && static_cast<GLuint>(attached) == frame_.colour_texture;
+  if (own || gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    if (toTexture) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+    if (saves) saved_.restore(gl);
+    return own ? fail(PLD_ERROR_TEXTURE, "pld_resolve: framebuffer %u draws to the frame's colour_texture, which is read meanwhile", target.name)
+               : fail(PLD_ERROR_FORMAT, "pld_resolve: this device cannot draw to target %u", target.name);
+  }
+  pushGroup("pellucid resolve");
+  timers_.mark(gl, Timers::kResolve);
+  setPlainDrawing(gl, frame_.width, frame_.height);
+  for (GLuint i = 1; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  bind(0, frame_.colour_texture);
+  for (const Plane& plane : planes_) bind(plane.spec.unit, plane.texture);
+  if (planarZ_) bind(5, planarZ_);
+  if (solid_) bind(6, solid_);
+  if (levelCount_ > 0) {
+    for (GLuint i = 0; i < kSpreadPlanes; ++i) bind(11 + i, spread_[i]);
+    for (GLuint i = 1; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    drawPyramid();
+    setPlainDrawing(gl, frame_.width, frame_.height);
+    for (GLuint i = 1; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, toTexture ? targetFrame_ : target.name);
+  }
+  const Program& program = target.view == PLD_VIEW_PICTURE ? picture_ : view_;
+  useProgram(program);
+  gl.Uniform2i(program.place(gl, "pictureSize"), frame_.width, frame_.height);
+  gl.Uniform1i(program.place(gl, "modulateSelf"), 0);
+  gl.Uniform1i(program.place(gl, "view"), static_cast<GLint>(target.view));
+  gl.Uniform3i(program.place(gl, "lookup"), 0, 0, levelCount_);
+  gl.Uniform1f(program.place(gl, "largestSpread"),
+               std::hypot(static_cast<float>(frame_.width), static_cast<float>(frame_.height)));
+  if (levelCount_ > 0) gl.Uniform4iv(program.place(gl, "spreadLevels"), kLevels, &levels_[0][0]);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  if (toTexture) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+  if (saves) saved_.restore(gl);
+  popGroup();
+  timers_.mark(gl, Timers::kResolved);
+  // Views of the same planes may follow; the next frame begins with its first stage.
+  return PLD_OK;
+}

@@ -1,0 +1,157 @@
+// The C boundary: null pointers, versions, contexts, threads and exceptions stop here.
+#include <cstdio>
+#include <new>
+
+#include "engine_bridge/c/pass.h"
+
+namespace {
+
+// One call at a time with a pass, on the thread where its context is current.
+template <class F>
+pld_status guarded(pld_pass* pass, const char* call, F f) noexcept {
+  if (!pass) return PLD_ERROR_ARGUMENT;
+  if (pass->busy.test_and_set(std::memory_order_acquire)) return PLD_ERROR_BUSY;
+  pld_status status = PLD_OK;
+  try {
+    pass->message[0] = '\0';
+    status = pass->isCurrent()
+                 ? f()
+                 : pass->fail(PLD_ERROR_CONTEXT, "%s: the context of pld_create() is not current on this thread", call);
+  } catch (const std::bad_alloc&) {
+    status = pass->fail(PLD_ERROR_MEMORY, "%s: out of memory", call);
+  } catch (const std::exception& mistake) {
+    status = pass->fail(PLD_ERROR_INTERNAL, "%s: %s", call, mistake.what());
+  } catch (...) {
+    status = PLD_ERROR_INTERNAL;
+  }
+  pass->busy.clear(std::memory_order_release);
+  return status;
+}
+
+pld_status refuse(const pld_create_info& info, pld_status status, const char* text) {
+  if (info.log) info.log(info.log_user, PLD_LOG_ERROR, text);
+  return status;
+}
+
+pld_status checkInfo(const pld_create_info& info) {
+  char text[200];
+  if (info.struct_size != sizeof(pld_create_info)) return PLD_ERROR_VERSION;  // its log may lie elsewhere
+  if ((info.version >> 10) != (static_cast<uint32_t>(PLD_VERSION) >> 10)) {
+    std::snprintf(text, sizeof(text), "pld_create: version: found %u.%u, expected %d.%d", info.version >> 20,
+                  (info.version >> 10) & 1023u, PLD_VERSION_MAJOR, PLD_VERSION_MINOR);
+    return refuse(info, PLD_ERROR_VERSION, text);
+  }
+  if (!info.get_proc_address) return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: get_proc_address is null");
+  struct {
+    const char* name;
+    int value, last;
+  } const choices[] = {{"method", info.method, PLD_METHOD_FRONT_TAIL}, {"tier", info.tier, PLD_TIER_EXACT},
+                       {"weight", info.weight, PLD_WEIGHT_BY_NONE},    {"depth", info.depth, PLD_DEPTH_LINEAR},
+                       {"clip", info.clip, PLD_CLIP_ZERO_TO_ONE},      {"rows", info.rows, PLD_ROWS_DOWN}};
+  for (const auto& choice : choices)
+    if (choice.value < 0 || choice.value > choice.last) {
+      std::snprintf(text, sizeof(text), "pld_create: %s: found %d, expected 0 to %d", choice.name, choice.value, choice.last);
+      return refuse(info, PLD_ERROR_ARGUMENT, text);
+    }
+  constexpr uint32_t features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
+                                PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS;
+  constexpr uint32_t flags = PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS;
+  if ((info.features & ~features) || (info.flags & ~flags))
+    return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: features or flags hold a bit that this version does not have");
+  return PLD_OK;
+}
+
+}  // namespace
+
+extern "C" {
+
+uint32_t pld_version(void) {
+  return PLD_VERSION;
+}
+
+pld_status pld_create(const pld_create_info* info, pld_pass** pass) {
+  if (!pass) return PLD_ERROR_ARGUMENT;
+  *pass = nullptr;
+  if (!info) return PLD_ERROR_ARGUMENT;
+  if (const pld_status status = checkInfo(*info); status != PLD_OK) return status;
+  pld_pass* made = nullptr;
+  pld_status status = PLD_ERROR_MEMORY;
+  try {
+    made = new pld_pass;
+    status = made->create(*info);
+  } catch (const std::bad_alloc&) {
+    status = refuse(*info, PLD_ERROR_MEMORY, "pld_create: out of memory");
+  } catch (const std::exception& mistake) {
+    status = refuse(*info, PLD_ERROR_INTERNAL, mistake.what());
+  } catch (...) {
+    status = PLD_ERROR_INTERNAL;
+  }
+  if (status == PLD_OK)
+    *pass = made;
+  else if (made) {
+    made->destroyObjects();
+    delete made;
+  }
+  return status;
+}
+
+pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height) {
+  return guarded(pass, "pld_resize", [&] { return pass->resize(width, height); });
+}
+
+pld_status pld_begin(pld_pass* pass, pld_stage stage, const pld_frame* frame) {
+  return guarded(pass, "pld_begin", [&] {
+    return frame ? pass->begin(stage, *frame) : pass->fail(PLD_ERROR_ARGUMENT, "pld_begin: frame is null");
+  });
+}
+
+pld_status pld_end(pld_pass* pass) {
+  return guarded(pass, "pld_end", [&] { return pass->end(); });
+}
+
+pld_status pld_resolve(pld_pass* pass, const pld_target* target) {
+  return guarded(pass, "pld_resolve", [&] {
+    return target ? pass->resolve(*target) : pass->fail(PLD_ERROR_ARGUMENT, "pld_resolve: target is null");
+  });
+}
+
+pld_status pld_query(pld_pass* pass, pld_value what, uint64_t* value) {
+  return guarded(pass, "pld_query", [&] {
+    return value ? pass->query(what, *value) : pass->fail(PLD_ERROR_ARGUMENT, "pld_query: value is null");
+  });
+}
+
+pld_status pld_glsl(pld_pass* pass, pld_stage stage, int32_t version, const char** text) {
+  return guarded(pass, "pld_glsl", [&] {
+    return text ? pass->seam(stage, version, *text) : pass->fail(PLD_ERROR_ARGUMENT, "pld_glsl: text is null");
+  });
+}
+
+pld_status pld_connect(pld_pass* pass, uint32_t program) {
+  return guarded(pass, "pld_connect", [&] { return pass->connect(program); });
+}
+
+pld_status pld_destroy(pld_pass** pass) {
+  if (!pass || !*pass) return PLD_ERROR_ARGUMENT;
+  const pld_status status = guarded(*pass, "pld_destroy", [&] {
+    (*pass)->destroyObjects();
+    return PLD_OK;
+  });
+  if (status == PLD_ERROR_BUSY) return status;
+  delete *pass;
+  *pass = nullptr;
+  return status;
+}
+
+const char* pld_message(const pld_pass* pass) {
+  return pass ? pass->message : "";
+}
+
+const char* pld_status_name(pld_status status) {
+  static const char* const names[] = {"PLD_OK",          "PLD_ERROR_ARGUMENT",    "PLD_ERROR_VERSION", "PLD_ERROR_ORDER",
+                                      "PLD_ERROR_SIZE",  "PLD_ERROR_TEXTURE",     "PLD_ERROR_FORMAT",  "PLD_ERROR_CONTEXT",
+                                      "PLD_ERROR_UNSUPPORTED", "PLD_ERROR_MEMORY", "PLD_ERROR_BUSY",   "PLD_ERROR_INTERNAL"};
+  return status >= PLD_OK && status <= PLD_ERROR_INTERNAL ? names[status] : "no pld_status";
+}
+
+}  // extern "C"

@@ -1,0 +1,97 @@
+#include "engine_bridge/c/permutation.h"
+
+#include <limits>
+
+namespace pellucid::c {
+
+std::string conflictOf(const Permutation& p) {
+  if (p.tier == PLD_TIER_EXACT)
+    return "tier: found PLD_TIER_EXACT, expected float, half or published: bits that no order changes need fragment "
+           "lists, which the offline program has";
+  if (p.published() && p.fronts()) return "tier: found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, expected float or half";
+  if (p.published() && p.has(PLD_FEATURE_DISPERSION))
+    return "features: found PLD_FEATURE_DISPERSION in PLD_TIER_PUBLISHED, which holds one offset for all channels";
+  if (p.has(PLD_FEATURE_DISPERSION) && !p.has(PLD_FEATURE_REFRACTION))
+    return "features: found PLD_FEATURE_DISPERSION without PLD_FEATURE_REFRACTION";
+  if (p.scatters() && p.method != PLD_METHOD_PHENOMENOLOGICAL)
+    return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
+  return {};
+}
+
+std::vector<PlaneSpec> planesOf(const Permutation& p) {
+  constexpr float far = std::numeric_limits<float>::infinity();
+  if (p.published()) {
+    std::vector<PlaneSpec> planes{{0, GL_RGBA16F, 64, 1, BlendKind::add, {0, 0, 0, 0}},
+                                  {1, GL_RGBA8, 32, 2, BlendKind::product, {1, 1, 1, 0}}};
+    if (p.scatters()) planes.push_back({2, GL_RG8_SNORM, 16, 8, BlendKind::add, {0, 0, 0, 0}});
+    return planes;
+  }
+  const bool half = p.tier == PLD_TIER_HALF;
+  const GLenum four = half ? GL_RGBA16F : GL_RGBA32F, two = half ? GL_RG16F : GL_RG32F;
+  const int bits = half ? 64 : 128;
+  std::vector<PlaneSpec> planes;
+  const auto sum = [&](GLuint attachment, GLuint unit) {
+    planes.push_back({attachment, four, bits, unit, BlendKind::add, {0, 0, 0, 0}});
+  };
+  sum(0, 1);
+  if (p.grey()) {
+    sum(1, 3);
+    planes.push_back({2, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
+  } else {
+    sum(1, 2);
+    sum(2, 3);
+    sum(3, 4);
+  }
+  if (p.light()) sum(4, 7);
+  if (p.scatters()) {
+    planes.push_back({5, GL_RG32F, 64, 9, BlendKind::minimum, {far, far, 0, 0}});
+    sum(6, 8);
+  }
+  if (p.has(PLD_FEATURE_DISPERSION)) sum(7, 10);
+  if (p.fronts()) {
+    sum(6, 8);
+    sum(7, 10);
+  }
+  return planes;
+}
+
+std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
+  std::vector<std::string> defines{"WEIGHT " + std::to_string(static_cast<int>(p.weight)), "NORMALISATION 0"};
+  const auto define = [&](const char* name, bool wanted) {
+    if (wanted) defines.emplace_back(name);
+  };
+  const bool layers = stage == PLD_STAGE_LAYERS;
+  define("STAGE_SOLIDS", stage == PLD_STAGE_SOLIDS);
+  define("STAGE_FRONT", stage == PLD_STAGE_FRONT);
+  define("DEPTH_IN_SHADER", p.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS);
+  define("SOLIDS", stage != PLD_STAGE_SOLIDS && p.has(PLD_FEATURE_SOLIDS));
+  define("PUBLISHED", p.published());
+  define("UNCOUNTED", p.published());
+  define("GREY", p.grey());
+  define("HALF", p.tier == PLD_TIER_HALF && layers);
+  define("FRONT_TAIL", p.fronts() && layers);
+  define("SCATTER", p.scatters() && layers);
+  define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && layers);
+  define("DIFFUSES", p.has(PLD_FEATURE_DIFFUSION) && layers);
+  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && layers);
+  return defines;
+}
+
+std::vector<std::string> resolveDefines(const Permutation& p) {
+  std::vector<std::string> defines{"PART_OF_TEXTURE"};
+  const auto define = [&](const char* name, bool wanted) {
+    if (wanted) defines.emplace_back(name);
+  };
+  define("NO_DEPTH", !p.planarDepth());
+  define("NO_SOLIDS", !p.has(PLD_FEATURE_SOLIDS));
+  define("NO_LIGHT", !p.light());
+  define("PUBLISHED", p.published());
+  define("GREY", p.grey());
+  define("HALF_SUMS", p.tier != PLD_TIER_FLOAT);
+  define("FRONT_TAIL", p.fronts());
+  define("SCATTER", p.scatters());
+  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION));
+  return defines;
+}
+
+}  // namespace pellucid::c

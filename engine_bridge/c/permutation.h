@@ -1,0 +1,47 @@
+// What a pass keeps per pixel, and the text that it takes: one place that knows how methods, tiers and features combine.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine_bridge/c/gl_functions.h"
+
+namespace pellucid::c {
+
+struct Permutation {
+  pld_method method = PLD_METHOD_PHENOMENOLOGICAL;
+  pld_tier tier = PLD_TIER_FLOAT;
+  uint32_t features = 0;
+  pld_weight weight = PLD_WEIGHT_BY_EQ5;
+  pld_depth depth = PLD_DEPTH_DEVICE;
+
+  bool has(pld_feature feature) const { return (features & static_cast<uint32_t>(feature)) != 0; }
+  bool scatters() const { return has(PLD_FEATURE_REFRACTION) || has(PLD_FEATURE_DIFFUSION); }
+  bool fronts() const { return method == PLD_METHOD_FRONT_TAIL; }
+  bool published() const { return tier == PLD_TIER_PUBLISHED; }
+  bool grey() const { return !published() && !has(PLD_FEATURE_COLOURED); }
+  bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters()); }
+  // Whether planar depth is needed beside the host's.
+  bool planarDepth() const { return scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
+};
+
+// Empty when the parts go together, else what does not: a sentence.
+std::string conflictOf(const Permutation& permutation);
+
+enum class BlendKind { add, minimum, product };  // product: of rgb, ZERO, ONE_MINUS_SRC_COLOR; a adds
+
+// One texture that layers are blended into.
+struct PlaneSpec {
+  GLuint attachment;
+  GLenum format;  // sized
+  int bits;
+  GLuint unit;  // where shaders/gl/resolve_here.glsl reads it
+  BlendKind blend;
+  GLfloat clear[4];
+};
+std::vector<PlaneSpec> planesOf(const Permutation& permutation);
+
+// Defines of shaders/gl/seam.glsl for a stage; of resolve_here.glsl.
+std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);
+std::vector<std::string> resolveDefines(const Permutation& permutation);
+
+}  // namespace pellucid::c

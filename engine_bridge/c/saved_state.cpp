@@ -1,0 +1,171 @@
+#include "engine_bridge/c/saved_state.h"
+
+#include <iterator>
+
+namespace pellucid::c {
+namespace {
+
+constexpr GLenum kAlphaTest = 0x0BC0;  // compatibility contexts only
+// Switches, in the order of SavedState::enabled_.
+constexpr GLenum kSwitches[] = {
+    GL_DEPTH_TEST,      GL_STENCIL_TEST,    GL_COLOR_LOGIC_OP,  GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE,
+    GL_SAMPLE_MASK,     GL_RASTERIZER_DISCARD, GL_CULL_FACE,       GL_CLIP_DISTANCE0,        GL_CLIP_DISTANCE1,
+    GL_CLIP_DISTANCE2,  GL_CLIP_DISTANCE3,  GL_CLIP_DISTANCE4,  GL_CLIP_DISTANCE5,           GL_CLIP_DISTANCE6,
+    GL_CLIP_DISTANCE7};
+constexpr int kAccumulationSwitches = 7;  // the first of them; clearing obeys RASTERIZER_DISCARD too
+
+void choose(const GlFunctions& gl, GLenum what, bool on) {
+  on ? gl.Enable(what) : gl.Disable(what);
+}
+
+// Of the first viewport alone, where there are several.
+void setScissor(const GlFunctions& gl, bool on) {
+  if (!gl.ViewportIndexedf)
+    choose(gl, GL_SCISSOR_TEST, on);
+  else
+    on ? gl.Enablei(GL_SCISSOR_TEST, 0) : gl.Disablei(GL_SCISSOR_TEST, 0);
+}
+
+void setViewport(const GlFunctions& gl, const GLfloat* v) {
+  if (gl.ViewportIndexedf)
+    gl.ViewportIndexedf(0, v[0], v[1], v[2], v[3]);
+  else
+    gl.Viewport(static_cast<GLint>(v[0]), static_cast<GLint>(v[1]), static_cast<GLsizei>(v[2]), static_cast<GLsizei>(v[3]));
+}
+
+GLint get(const GlFunctions& gl, GLenum what) {
+  GLint value = 0;
+  gl.GetIntegerv(what, &value);
+  return value;
+}
+
+GLint get(const GlFunctions& gl, GLenum what, int index) {
+  GLint value = 0;
+  gl.GetIntegeri_v(what, static_cast<GLuint>(index), &value);
+  return value;
+}
+
+}  // namespace
+
+void SavedState::save(const GlFunctions& gl, Units units, int uniformBinding) {
+  units_ = units;
+  uniformBinding_ = uniformBinding;
+  program_ = get(gl, GL_CURRENT_PROGRAM);
+  vertexArray_ = get(gl, GL_VERTEX_ARRAY_BINDING);
+  drawFramebuffer_ = get(gl, GL_DRAW_FRAMEBUFFER_BINDING);
+  activeTexture_ = get(gl, GL_ACTIVE_TEXTURE);
+  if (gl.GetFloati_v) {
+    gl.GetFloati_v(GL_VIEWPORT, 0, viewport_);
+    scissor_ = gl.IsEnabledi(GL_SCISSOR_TEST, 0);
+  } else {
+    GLint whole[4];
+    gl.GetIntegerv(GL_VIEWPORT, whole);
+    for (int i = 0; i < 4; ++i) viewport_[i] = static_cast<GLfloat>(whole[i]);
+    scissor_ = gl.IsEnabled(GL_SCISSOR_TEST);
+  }
+  for (int i = 0; i < kDrawBuffers; ++i) {
+    Blend& blend = blend_[i];
+    blend.enabled = gl.IsEnabledi(GL_BLEND, static_cast<GLuint>(i));
+    gl.GetBooleani_v(GL_COLOR_WRITEMASK, static_cast<GLuint>(i), blend.mask);
+    blend.sourceRgb = get(gl, GL_BLEND_SRC_RGB, i);
+    blend.targetRgb = get(gl, GL_BLEND_DST_RGB, i);
+    blend.sourceAlpha = get(gl, GL_BLEND_SRC_ALPHA, i);
+    blend.targetAlpha = get(gl, GL_BLEND_DST_ALPHA, i);
+    blend.equationRgb = get(gl, GL_BLEND_EQUATION_RGB, i);
+    blend.equationAlpha = get(gl, GL_BLEND_EQUATION_ALPHA, i);
+  }
+  gl.GetBooleanv(GL_DEPTH_WRITEMASK, &depthMask_);
+  depthFunction_ = get(gl, GL_DEPTH_FUNC);
+  gl.GetIntegerv(GL_POLYGON_MODE, polygonMode_);
+  for (std::size_t i = 0; i < std::size(kSwitches); ++i) enabled_[i] = gl.IsEnabled(kSwitches[i]);
+  if (!gl.core) enabled_[std::size(kSwitches)] = gl.IsEnabled(kAlphaTest);
+  for (int i = 0; i < units.count; ++i) {
+    gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units.first + i));
+    textures_[i] = get(gl, GL_TEXTURE_BINDING_2D);
+    samplers_[i] = get(gl, GL_SAMPLER_BINDING);
+  }
+  gl.ActiveTexture(static_cast<GLenum>(activeTexture_));
+  uniformBuffer_ = get(gl, GL_UNIFORM_BUFFER_BINDING);
+  if (uniformBinding >= 0) {
+    const auto index = static_cast<GLuint>(uniformBinding);
+    indexedBuffer_ = get(gl, GL_UNIFORM_BUFFER_BINDING, uniformBinding);
+    gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, index, &indexedStart_);
+    gl.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, index, &indexedSize_);
+  }
+}
+
+void SavedState::restore(const GlFunctions& gl) const {
+  const auto name = [](GLint saved) { return static_cast<GLuint>(saved); };
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, name(drawFramebuffer_));
+  setViewport(gl, viewport_);
+  setScissor(gl, scissor_ != GL_FALSE);
+  for (int i = 0; i < kDrawBuffers; ++i) {
+    const Blend& blend = blend_[i];
+    const auto index = static_cast<GLuint>(i);
+    blend.enabled ? gl.Enablei(GL_BLEND, index) : gl.Disablei(GL_BLEND, index);
+    gl.ColorMaski(index, blend.mask[0], blend.mask[1], blend.mask[2], blend.mask[3]);
+    gl.BlendFuncSeparatei(index, name(blend.sourceRgb), name(blend.targetRgb), name(blend.sourceAlpha),
+                          name(blend.targetAlpha));
+    gl.BlendEquationSeparatei(index, name(blend.equationRgb), name(blend.equationAlpha));
+  }
+  gl.DepthMask(depthMask_);
+  gl.DepthFunc(name(depthFunction_));
+  restoreShape(gl);
+  for (int i = 0; i < kAccumulationSwitches; ++i) choose(gl, kSwitches[i], enabled_[i] != GL_FALSE);
+  if (!gl.core) choose(gl, kAlphaTest, enabled_[std::size(kSwitches)] != GL_FALSE);
+  for (int i = 0; i < units_.count; ++i) {
+    gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + i));
+    gl.BindTexture(GL_TEXTURE_2D, textures_[i] && gl.IsTexture(name(textures_[i])) ? name(textures_[i]) : 0);
+    gl.BindSampler(name(units_.first + i), name(samplers_[i]));
+  }
+  gl.ActiveTexture(name(activeTexture_));
+  gl.BindVertexArray(name(vertexArray_));
+  gl.UseProgram(program_ && gl.IsProgram(name(program_)) ? name(program_) : 0);
+  if (uniformBinding_ >= 0) {
+    const GLuint index = name(uniformBinding_);
+    if (indexedBuffer_ && indexedSize_ > 0)
+      gl.BindBufferRange(GL_UNIFORM_BUFFER, index, name(indexedBuffer_), static_cast<GLintptr>(indexedStart_),
+                         static_cast<GLsizeiptr>(indexedSize_));
+    else
+      gl.BindBufferBase(GL_UNIFORM_BUFFER, index, name(indexedBuffer_));
+  }
+  gl.BindBuffer(GL_UNIFORM_BUFFER, name(uniformBuffer_));
+}
+
+void SavedState::restoreShape(const GlFunctions& gl) const {
+  const auto name = [](GLint saved) { return static_cast<GLuint>(saved); };
+  if (gl.core || polygonMode_[0] == polygonMode_[1]) {
+    gl.PolygonMode(GL_FRONT_AND_BACK, name(polygonMode_[0]));
+  } else {
+    gl.PolygonMode(GL_FRONT, name(polygonMode_[0]));
+    gl.PolygonMode(GL_BACK, name(polygonMode_[1]));
+  }
+  for (std::size_t i = kAccumulationSwitches; i < std::size(kSwitches); ++i)
+    choose(gl, kSwitches[i], enabled_[i] != GL_FALSE);
+}
+
+void setViewportTo(const GlFunctions& gl, int x, int y, int width, int height) {
+  const GLfloat v[4] = {static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width),
+                        static_cast<GLfloat>(height)};
+  setViewport(gl, v);
+}
+
+void setAccumulation(const GlFunctions& gl, int width, int height) {
+  setViewportTo(gl, 0, 0, width, height);
+  setScissor(gl, false);
+  for (int i = 0; i < kAccumulationSwitches; ++i) gl.Disable(kSwitches[i]);
+  if (!gl.core) gl.Disable(kAlphaTest);
+  gl.DepthMask(GL_FALSE);
+  for (GLuint i = 0; i < kDrawBuffers; ++i) {
+    gl.Disablei(GL_BLEND, i);
+    gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+}
+
+void setPlainDrawing(const GlFunctions& gl, int width, int height) {
+  setAccumulation(gl, width, height);
+  for (const GLenum what : kSwitches) gl.Disable(what);
+  gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+}  // namespace pellucid::c

@@ -1,0 +1,49 @@
+// The GL state that this library touches: the whole list, saved and put back. INTEGRATION.md names it for hosts.
+#pragma once
+#include "engine_bridge/c/gl_functions.h"
+
+namespace pellucid::c {
+
+constexpr int kDrawBuffers = 8;  // what OpenGL 3.3 promises; others are not touched
+constexpr int kMostUnits = 16;
+
+// A run of texture units: GL_TEXTURE_2D and sampler bindings of first .. first + count - 1.
+struct Units {
+  int first = 0, count = 0;
+};
+
+class SavedState {
+ public:
+  // uniformBinding < 0: no indexed uniform buffer is touched.
+  void save(const GlFunctions& gl, Units units, int uniformBinding);
+  // Put back what save() saw; objects that the host has deleted since are left unbound.
+  void restore(const GlFunctions& gl) const;
+  // Culling, polygon mode and clipping alone, which the host's own draws of a stage go by.
+  void restoreShape(const GlFunctions& gl) const;
+
+ private:
+  struct Blend {
+    GLboolean enabled, mask[4];
+    GLint sourceRgb, targetRgb, sourceAlpha, targetAlpha, equationRgb, equationAlpha;
+  };
+  Units units_;
+  int uniformBinding_ = -1;
+  GLint program_ = 0, vertexArray_ = 0, drawFramebuffer_ = 0, activeTexture_ = 0;
+  GLfloat viewport_[4] = {};
+  Blend blend_[kDrawBuffers] = {};
+  GLboolean depthMask_ = GL_FALSE;
+  GLint depthFunction_ = 0, polygonMode_[2] = {};
+  GLboolean enabled_[20] = {};
+  GLboolean scissor_ = GL_FALSE;
+  GLint textures_[kMostUnits] = {}, samplers_[kMostUnits] = {};
+  GLint uniformBuffer_ = 0, indexedBuffer_ = 0;
+  GLint64 indexedStart_ = 0, indexedSize_ = 0;
+};
+
+void setViewportTo(const GlFunctions& gl, int x, int y, int width, int height);
+// All that could keep a draw of the library's own from its pixels. The viewport is (0, 0, width, height).
+void setPlainDrawing(const GlFunctions& gl, int width, int height);
+// The part of it that would falsify sums; culling, polygon mode and clipping stay the host's.
+void setAccumulation(const GlFunctions& gl, int width, int height);
+
+}  // namespace pellucid::c

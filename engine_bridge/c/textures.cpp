@@ -1,0 +1,79 @@
+#include "engine_bridge/c/textures.h"
+
+namespace pellucid::c {
+
+bool factsOf(const GlFunctions& gl, GLuint name, TextureFacts& facts) {
+  if (name == 0 || !gl.IsTexture(name)) return false;
+  if (gl.GetTextureParameteriv) {
+    GLint kind = 0;
+    gl.GetTextureParameteriv(name, GL_TEXTURE_TARGET, &kind);
+    if (kind != GL_TEXTURE_2D) return false;
+  }
+  GLint bound = 0, now = 0;
+  gl.GetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
+  gl.BindTexture(GL_TEXTURE_2D, name);
+  gl.GetIntegerv(GL_TEXTURE_BINDING_2D, &now);
+  const bool fits = static_cast<GLuint>(now) == name;
+  if (!fits) gl.GetError();  // of the binding: a texture of another kind
+  if (fits) {
+    gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &facts.width);
+    gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &facts.height);
+    gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_INTERNAL_FORMAT, &facts.format);
+  }
+  gl.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
+  return fits;
+}
+
+GLenum depthAttachment(GLint format) {
+  switch (format) {
+    case GL_DEPTH_COMPONENT:
+    case GL_DEPTH_COMPONENT16:
+    case GL_DEPTH_COMPONENT24:
+    case GL_DEPTH_COMPONENT32:
+    case GL_DEPTH_COMPONENT32F:
+      return GL_DEPTH_ATTACHMENT;
+    case GL_DEPTH_STENCIL:
+    case GL_DEPTH24_STENCIL8:
+    case GL_DEPTH32F_STENCIL8:
+      return GL_DEPTH_STENCIL_ATTACHMENT;
+    default:
+      return 0;
+  }
+}
+
+bool isLinearDepth(GLint format) {
+  switch (format) {
+    case GL_R16F:
+    case GL_R32F:
+    case GL_RG16F:
+    case GL_RG32F:
+    case GL_RGBA16F:
+    case GL_RGBA32F:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool isColour(GLint format) {
+  switch (format) {
+    case GL_RGBA:
+    case GL_RGB:
+    case GL_RGBA8:
+    case GL_RGB8:
+    case GL_SRGB8:
+    case GL_SRGB8_ALPHA8:
+    case GL_RGB10_A2:
+    case GL_RGBA16:
+    case GL_R11F_G11F_B10F:
+    case GL_RGB16F:
+    case GL_RGBA16F:
+    case GL_RGB32F:
+    case GL_RGBA32F:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace pellucid::c

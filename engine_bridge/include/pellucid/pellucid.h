@@ -1,0 +1,227 @@
+/* Pellucid behind an engine: the host draws its transparent geometry, in any order, with its own shaders; this library
+   keeps the planes, the blending and the resolve. See INTEGRATION.md. C99, OpenGL 3.3 and later.
+
+   Rules of the interface
+   * Every call is made with the host's GL context current on the calling thread, the one that pld_create() saw.
+   * No call throws, ends the process, or reads GL through anything but the host's get_proc_address. The library links no
+     GL library and has no global state.
+   * A call that fails changes no GL state and says why through the log and pld_message(). GL errors that are pending
+     when a call is made stay pending, but for pld_create() and pld_resize(), which report them to the log and clear them.
+   * Textures are the host's 2D textures, one sample a pixel, level 0. Rows may run up or down (pld_rows).
+   * After pld_resize() no memory is allocated and no GL object is made. */
+#ifndef PELLUCID_H
+#define PELLUCID_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define PLD_VERSION_MAJOR 0
+#define PLD_VERSION_MINOR 1
+#define PLD_VERSION_PATCH 0
+#define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
+
+#if defined(PLD_STATIC)
+#define PLD_API
+#elif defined(_WIN32)
+#define PLD_API __declspec(dllimport)
+#else
+#define PLD_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct pld_pass pld_pass; /* one view: its planes, its programs, its state */
+
+typedef enum pld_status {
+  PLD_OK = 0,
+  PLD_ERROR_ARGUMENT = 1,    /* a null pointer, or a value that no enumeration or range has */
+  PLD_ERROR_VERSION = 2,     /* struct_size or version of another header than this library knows */
+  PLD_ERROR_ORDER = 3,       /* not now: see the order of calls below */
+  PLD_ERROR_SIZE = 4,        /* a texture or a size that does not fit */
+  PLD_ERROR_TEXTURE = 5,     /* no 2D texture of this context: deleted, foreign, or of another kind */
+  PLD_ERROR_FORMAT = 6,      /* a texture whose format cannot serve */
+  PLD_ERROR_CONTEXT = 7,     /* the context of pld_create() is not current on this thread */
+  PLD_ERROR_UNSUPPORTED = 8, /* neither this device nor this version has it */
+  PLD_ERROR_MEMORY = 9,      /* the device, or the machine, has no room */
+  PLD_ERROR_BUSY = 10,       /* another thread is inside a call with this pass */
+  PLD_ERROR_INTERNAL = 11    /* a mistake of this library; the message holds the driver's words */
+} pld_status;
+
+/* As eglGetProcAddress, glXGetProcAddress, SDL_GL_GetProcAddress; `user` is passed through. */
+typedef void (*pld_proc)(void);
+typedef pld_proc (*pld_get_proc_address)(void* user, const char* name);
+
+typedef enum pld_log_level { PLD_LOG_ERROR = 0, PLD_LOG_WARNING = 1, PLD_LOG_INFO = 2 } pld_log_level;
+/* Called on the thread of the call that logs; `text` lives until it returns. */
+typedef void (*pld_log)(void* user, pld_log_level level, const char* text);
+
+typedef enum pld_method {
+  PLD_METHOD_PHENOMENOLOGICAL = 0, /* weighted sums, refraction and diffusion where the features ask */
+  PLD_METHOD_WEIGHTED = 1,         /* the same sums; refuses the scattering features */
+  PLD_METHOD_FRONT_TAIL = 2        /* the nearest layer exactly over weighted sums; geometry is drawn twice */
+} pld_method;
+
+typedef enum pld_tier {
+  PLD_TIER_FLOAT = 0,     /* 32-bit float planes: the bits of the offline program on the same fragments and order */
+  PLD_TIER_HALF = 1,      /* the same planes in 16-bit floats; sums are clamped at 65504 */
+  PLD_TIER_PUBLISHED = 2, /* RGBA16F + RGBA8 + RG8_SNORM, as McGuire and Mara 2017 print them */
+  PLD_TIER_EXACT = 3      /* refused: order-independent bits need fragment lists, which are the offline program's */
+} pld_tier;
+
+/* What the scene's materials need. A plane that no feature asks for is neither kept nor written. */
+typedef enum pld_feature {
+  PLD_FEATURE_COLOURED = 1,   /* some material transmits colour; without it one opacity serves all channels */
+  PLD_FEATURE_LIGHT = 2,      /* some material adds light: coverage 0, or transmission 1 in a channel */
+  PLD_FEATURE_REFRACTION = 4, /* the plane of light comes with it, and with diffusion */
+  PLD_FEATURE_DIFFUSION = 8,
+  PLD_FEATURE_DISPERSION = 16, /* refraction of its own for red and blue; not in the published tier */
+  PLD_FEATURE_SOLIDS = 32      /* some fragments hide everything: PLD_STAGE_SOLIDS is drawn before the layers */
+} pld_feature;
+
+typedef enum pld_flag {
+  PLD_FLAG_HOST_RESTORES = 1, /* nothing is saved or put back: the host sets all state of INTEGRATION.md itself */
+  PLD_FLAG_TIMERS = 2,        /* GPU times of every stage, see pld_query() */
+  PLD_FLAG_DEBUG_GROUPS = 4,  /* KHR_debug groups around every stage */
+  PLD_FLAG_DEBUG_VIEWS = 8    /* pld_target.view may ask for a plane instead of the picture */
+} pld_flag;
+
+typedef enum pld_weight {
+  PLD_WEIGHT_BY_EQ5 = 0, /* McGuire and Mara 2017, eq. 5 */
+  PLD_WEIGHT_BY_EQ7 = 1, /* McGuire and Bavoil 2013, eqs. 7 to 10 as printed */
+  PLD_WEIGHT_BY_EQ8 = 2,
+  PLD_WEIGHT_BY_EQ9 = 3,
+  PLD_WEIGHT_BY_EQ10 = 4,
+  PLD_WEIGHT_BY_EQ7Z = 5, /* the same without their second factor of alpha */
+  PLD_WEIGHT_BY_EQ8Z = 6,
+  PLD_WEIGHT_BY_EQ9Z = 7,
+  PLD_WEIGHT_BY_EQ10Z = 8,
+  PLD_WEIGHT_BY_POWER = 9, /* z to the power of -weight_exponent */
+  PLD_WEIGHT_BY_NONE = 10
+} pld_weight;
+
+typedef enum pld_depth {
+  PLD_DEPTH_DEVICE = 0,  /* a depth texture; it also tests the layers, by LEQUAL or, reversed, GEQUAL */
+  PLD_DEPTH_REVERSED = 1,
+  PLD_DEPTH_LINEAR = 2   /* red of a float texture is planar view distance in scene units; 0 and less, or inf: nothing */
+} pld_depth;
+
+typedef enum pld_clip { PLD_CLIP_MINUS_ONE_TO_ONE = 0, PLD_CLIP_ZERO_TO_ONE = 1 } pld_clip; /* as glClipControl */
+typedef enum pld_rows { PLD_ROWS_UP = 0, PLD_ROWS_DOWN = 1 } pld_rows; /* texel row 0 is the picture's bottom, its top */
+
+typedef struct pld_create_info {
+  uint32_t struct_size; /* sizeof(pld_create_info) */
+  uint32_t version;     /* PLD_VERSION */
+  pld_get_proc_address get_proc_address;
+  void* get_proc_address_user;
+  pld_log log; /* may be null */
+  void* log_user;
+  pld_method method;
+  pld_tier tier;
+  uint32_t features; /* pld_feature, or-ed */
+  uint32_t flags;    /* pld_flag, or-ed */
+  pld_weight weight;
+  pld_depth depth;
+  pld_clip clip;
+  pld_rows rows;
+  uint32_t uniform_binding; /* binding point of the seam's uniform block, while stages are drawn */
+  uint32_t texture_unit;    /* the seam reads this unit and the two after it, while stages are drawn */
+} pld_create_info;
+
+typedef enum pld_refract {
+  PLD_REFRACT_NOTHING = 0,
+  PLD_REFRACT_AT_DISTANCE = 1, /* the background lies refract_distance behind every surface */
+  PLD_REFRACT_AT_DEPTH = 2,    /* it lies at the opaque depth */
+  PLD_REFRACT_THROUGH_SLAB = 3 /* over the surface's thickness, then straight on */
+} pld_refract;
+
+typedef struct pld_frame {
+  uint32_t struct_size;    /* sizeof(pld_frame) */
+  uint32_t colour_texture; /* lit opaque picture, scene-linear, premultiplied; read by pld_resolve() */
+  uint32_t depth_texture;
+  int32_t width, height;   /* the picture is texels (0, 0) to (width, height) of every texture; at most pld_resize()'s */
+  float projection[16];    /* clip from view, by columns; right-handed, the eye looks down -z; jitter is in it */
+  float metres_per_unit;   /* of view space, > 0 */
+  float pre_exposure;      /* what colour_texture carries already; the seam multiplies radiance by it; > 0 */
+  float weight_near, weight_far; /* metres, 0 < near < far: range of eqs. 5 and 10, from the camera, not from the frame */
+  float weight_exponent;         /* of PLD_WEIGHT_BY_POWER */
+  pld_refract refract;
+  float refract_distance;  /* metres, > 0; PLD_REFRACT_AT_DISTANCE */
+  float diffusion_k0;      /* metres, >= 0; 0.3 as in the papers' pictures */
+  float diffusion_k1;      /* metres, > 0; 0.5 */
+} pld_frame;
+
+typedef enum pld_stage {
+  PLD_STAGE_SOLIDS = 0, /* with PLD_FEATURE_SOLIDS: the same geometry, the nearest fragment that hides everything */
+  PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth */
+  PLD_STAGE_LAYERS = 2  /* all transparent geometry, in any order */
+} pld_stage;
+
+typedef enum pld_view {
+  PLD_VIEW_PICTURE = 0,
+  PLD_VIEW_LAYER_COUNT = 1,  /* grey: layers / 16; published: 1 where any */
+  PLD_VIEW_MEAN_COLOUR = 2,  /* the layers' weighted mean */
+  PLD_VIEW_TRANSMISSION = 3, /* beta */
+  PLD_VIEW_WEIGHT = 4,       /* mean weight of the occluders, per channel, over 1 + itself */
+  PLD_VIEW_LIGHT = 5,        /* light that adds */
+  PLD_VIEW_OFFSET = 6,       /* red, green: 0.5 + offset / 128 px; blue: 1 where anything refracts */
+  PLD_VIEW_SPREAD = 7,       /* D / 64 px */
+  PLD_VIEW_CLAMPED = 8,      /* 1 where a sum is as large as its format goes: red colour or weight, green spread or offset */
+  PLD_VIEW_SOLID = 9         /* colour of the nearest solid */
+} pld_view;
+
+typedef enum pld_target_kind { PLD_TARGET_TEXTURE = 0, PLD_TARGET_FRAMEBUFFER = 1 } pld_target_kind;
+
+typedef struct pld_target {
+  uint32_t struct_size; /* sizeof(pld_target) */
+  pld_target_kind kind;
+  uint32_t name; /* of a texture other than the frame's, or of a framebuffer whose first draw buffer is drawn to */
+  pld_view view;
+} pld_target;
+
+typedef enum pld_value {
+  PLD_VALUE_BITS_PER_PIXEL = 0, /* of the planes that layers are blended into */
+  PLD_VALUE_BYTES = 1,          /* of all textures of this pass, since pld_resize() */
+  PLD_VALUE_PLANES = 2,         /* how many textures layers are blended into */
+  PLD_VALUE_GEOMETRY_PASSES = 3,
+  PLD_VALUE_FIRST_PLANE = 4, /* + i: the GL name of plane i, to look at; 0 where draw buffer i is not used; i < 8 */
+  PLD_VALUE_NS_BEGIN = 16,   /* nanoseconds on the device, of the newest frame that is known; PLD_FLAG_TIMERS */
+  PLD_VALUE_NS_DRAWS = 17,   /* from the end of pld_begin() to pld_end(), all stages */
+  PLD_VALUE_NS_RESOLVE = 18
+} pld_value;
+
+/* The version of the library, as PLD_VERSION. */
+PLD_API uint32_t pld_version(void);
+
+/* Order of calls: create, resize, then frames of { begin, draws, end } for every stage, solids, front, layers, and
+   resolve. resize and destroy lie between frames. A frame may be given up: pld_end(), then begin its first stage again. */
+PLD_API pld_status pld_create(const pld_create_info* info, pld_pass** pass);
+/* Room for pictures up to width x height. Gives back what the last size took. */
+PLD_API pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height);
+/* Binds a framebuffer of this library and sets blending, masks, depth and viewport; the host then draws with programs
+   that hold the seam of this stage. In between it may change anything but those. */
+PLD_API pld_status pld_begin(pld_pass* pass, pld_stage stage, const pld_frame* frame);
+/* Puts back the state that pld_begin() found. */
+PLD_API pld_status pld_end(pld_pass* pass);
+/* The picture, or a view of a plane, into the target. Pixels without layers get the background's bits. */
+PLD_API pld_status pld_resolve(pld_pass* pass, const pld_target* target);
+PLD_API pld_status pld_query(pld_pass* pass, pld_value what, uint64_t* value);
+/* Sets *pass to null. With no context current nothing on the device is given back. */
+PLD_API pld_status pld_destroy(pld_pass** pass);
+
+/* The GLSL that a material's fragment shader holds for a stage, after its #version line: pldWriteFragment() and the
+   outputs. For GLSL `version` 330 to 460. The text is the pass's and lives until it is asked for again or destroyed. */
+PLD_API pld_status pld_glsl(pld_pass* pass, pld_stage stage, int32_t version, const char** text);
+/* Connects the seam's uniform block and samplers of a linked program. Needed once per program below GLSL 4.20. */
+PLD_API pld_status pld_connect(pld_pass* pass, uint32_t program);
+
+/* What the last call that failed on this pass said: one sentence; "" when none did. Lives until the next call. */
+PLD_API const char* pld_message(const pld_pass* pass);
+/* "PLD_ERROR_ORDER" and the like. */
+PLD_API const char* pld_status_name(pld_status status);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

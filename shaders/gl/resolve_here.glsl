@@ -1,0 +1,120 @@
+#pragma once
+// Sums to what transparency does to a pixel: fetch and resolve through the shared model. Defines say how the sums lie:
+// GREY, PUBLISHED, FRONT_TAIL, else one plane per sum; and which planes there are: NO_LIGHT, SCATTER, DISPERSION.
+#include "gl/lookup.glsl"
+#include "shared/picture.glsl"
+
+#ifndef PUBLISHED
+layout(binding = 1) uniform sampler2D radianceSum;
+layout(binding = 2) uniform sampler2D weightSum;
+layout(binding = 3) uniform sampler2D opacitySum;
+layout(binding = 4) uniform sampler2D depthSum;
+layout(binding = 7) uniform sampler2D lightSum;
+layout(binding = 9) uniform sampler2D nearestZ;  // g: of the layers that diffuse
+layout(binding = 10) uniform sampler2D dispersionSum;
+#endif
+#ifdef FRONT_TAIL
+#include "gl/front_sums.glsl"
+#endif
+
+uniform int modulateSelf;
+uniform ivec3 lookup;  // kernel, exact, levels of the pyramid
+uniform float largestSpread;
+
+// Of one pixel.
+struct VeilHere {
+  Resolved resolved;  // transmission is of the background that is seen, the pixel's own or another's
+  int kind;           // 0 untouched, 1 shows its own background, 2 another
+  vec4 applied;       // 2: transmission times what is seen; its mean times (1 - that alpha)
+};
+
+#ifndef PUBLISHED
+OitTargets targetsAt(ivec2 pixel) {
+#ifdef NO_LIGHT
+  vec4 light = vec4(0.0f);
+#else
+  vec4 light = texelFetch(lightSum, pixel, 0);
+#endif
+#ifdef GREY
+  GreyTargets grey;
+  grey.radiance = texelFetch(radianceSum, pixel, 0);
+  grey.opacity = texelFetch(opacitySum, pixel, 0);
+  vec4 depth = texelFetch(depthSum, pixel, 0);
+  grey.depth = vec2(depth.x, depth.y);
+  return unpackGrey(grey, light);
+#else
+  OitTargets targets;
+  targets.radiance = texelFetch(radianceSum, pixel, 0);
+  targets.weight = texelFetch(weightSum, pixel, 0);
+  targets.opacity = texelFetch(opacitySum, pixel, 0);
+  targets.depth = texelFetch(depthSum, pixel, 0);
+  targets.light = light;
+  return targets;
+#endif
+}
+#endif
+
+VeilHere veilAt(ivec2 pixel) {
+  VeilHere veil;
+  veil.kind = 0;
+  veil.resolved.transparent = vec3(0.0f);
+  veil.resolved.transmission = vec3(1.0f);
+  veil.applied = vec4(0.0f);
+#ifdef PUBLISHED
+  PublishedSums sums = publishedAt(pixel);
+  bool any = anyPublished(sums);
+#else
+  OitTargets targets = targetsAt(pixel);
+  OitSums sums = unpackSums(targets);
+  bool any = sums.count != 0.0f;
+#ifdef FRONT_TAIL
+  FrontTargets nearest = frontAt(pixel);
+  any = any || nearest.radiance.a != 0.0f;
+#endif
+#endif
+  vec4 front = solidAt(pixel);
+  bool hidesAll = front.a < kNoDepth;
+#ifdef SCATTER
+  vec4 path = pathSumsAt(pixel);
+  bool scatters = path.z > 0.0f || path.w > 0.0f;
+  // A solid behind such layers is part of the background that they show.
+  hidesAll = hidesAll && !scatters;
+#endif
+  if (!any && !hidesAll) return veil;
+#ifdef PUBLISHED
+  veil.resolved = resolvePublished(sums.numerator, sums.denominator, sums.beta, modulateSelf != 0);
+#else
+  veil.resolved = resolveSums(sums, modulateSelf != 0);
+#endif
+#ifdef FRONT_TAIL
+  veil.resolved = frontOverTail(nearest, veil.resolved);
+#endif
+  if (hidesAll) {
+    veil.resolved.transparent = overBackground(veil.resolved, vec3(front));
+    veil.resolved.transmission = vec3(0.0f);
+  }
+  veil.kind = 1;
+#ifdef SCATTER
+  if (!scatters) return veil;
+  LookupChoice choice;
+  choice.kernel = lookup.x;
+  choice.exact = lookup.y;
+  choice.levels = lookup.z;
+  choice.largestSpread = largestSpread;
+  vec4 dispersion = vec4(0.0f);
+#ifdef DISPERSION
+  dispersion = dispersionOf(texelFetch(dispersionSum, pixel, 0), path.z);
+#endif
+#ifdef PUBLISHED
+  vec2 depths = vec2(0.0f);  // no depth says what stands in front
+#else
+  vec2 depths = vec2(targets.light.a, texelFetch(nearestZ, pixel, 0).g);
+#endif
+  vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel);
+  precise vec3 shown = veil.resolved.transmission * throughOnly(veil.resolved.transmission, vec3(seen));
+  precise float hole = meanOf(veil.resolved.transmission) * (1.0f - seen.a);
+  veil.kind = 2;
+  veil.applied = vec4(shown, hole);
+#endif
+  return veil;
+}

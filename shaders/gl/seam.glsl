@@ -1,0 +1,178 @@
+#pragma once
+// What an engine's material shader holds: the outputs of a stage, and pldWriteFragment(), which it calls where it would
+// write a colour. Defines choose the stage (STAGE_SOLIDS, STAGE_FRONT, else the layers) and the planes.
+#include "shared/diffusion.glsl"
+#include "shared/resolve.glsl"  // here: what is first included inside of a condition is there under it alone
+#if defined(STAGE_SOLIDS)
+layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
+#elif defined(STAGE_FRONT)
+layout(location = 0) out float frontZ;  // blended by MIN
+#elif defined(PUBLISHED)
+#include "gl/published_output.glsl"
+#else
+#include "gl/sums_output.glsl"
+#ifdef FRONT_TAIL
+#include "gl/front_output.glsl"
+#endif
+#endif
+
+PLD_FRAME_LAYOUT uniform PldFrame {
+  vec4 pldWeight;      // range near, far in metres; exponent; metres per unit
+  vec4 pldPicture;     // pre-exposure; 1 where rows run down, -1 where up; not 0: orthographic; 1 + precision of depth
+  vec4 pldRefraction;  // PLD_REFRACT_*; metres (at a distance); focal length in x and y, pixels
+  vec4 pldDiffusion;   // k0, k1 metres
+};
+PLD_UNIT_0 uniform sampler2D pldOpaqueZ;  // planar metres, +inf where nothing is
+PLD_UNIT_1 uniform sampler2D pldSolid;    // nearest fragment that hides everything: rgb, planar z
+PLD_UNIT_2 uniform sampler2D pldFrontZ;   // nearest layer, planar metres
+
+// One shaded transparent surface under this fragment.
+struct PldSurface {
+  vec3 radiance;       // premultiplied, scene-linear: coverage * reflected + emitted, >= 0
+  float coverage;      // part of the pixel it touches, [0,1]; 0 for light that adds and hides nothing
+  vec3 transmission;   // colour let straight through where it touches, at the actual angle, [0,1]
+  vec3 position;       // view space, scene units, the eye looks down -z
+  // With refraction or diffusion; pldSurface() fills in a surface that does neither.
+  vec3 normal;         // view space, unit, on the side of the eye
+  float eta;           // index outside over inside, green; 1 bends nothing
+  vec2 etaRedBlue;     // of red and blue, with dispersion; else as eta
+  float thickness;     // scene units, along the normal
+  float collimation;   // 1 clear, 0 scatters all
+};
+
+PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 position) {
+  PldSurface surface;
+  surface.radiance = radiance;
+  surface.coverage = coverage;
+  surface.transmission = transmission;
+  surface.position = position;
+  surface.normal = vec3(0.0f, 0.0f, 1.0f);
+  surface.eta = 1.0f;
+  surface.etaRedBlue = vec2(1.0f);
+  surface.thickness = 0.0f;
+  surface.collimation = 1.0f;
+  return surface;
+}
+
+WeightSettings seamWeight() {
+  WeightSettings settings;
+  settings.kind = WEIGHT;
+  settings.rangeNear = pldWeight.x;
+  settings.rangeFar = pldWeight.y;
+  settings.exponent = pldWeight.z;
+  return settings;
+}
+
+// A layer in metres and pixels, for hosts that know its scattering already. What pldWriteFragment() ends in.
+//   offset      float pixels, y down; (0, 0) does not refract
+//   variance    s^2, pixels^2
+//   dispersion  offset of red minus `offset`, of blue minus it
+void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, vec2 offset, float variance,
+                   vec4 dispersion) {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  if (!(z > 0.0f)) discard;
+#ifdef DEPTH_IN_SHADER
+  if (z > texelFetch(pldOpaqueZ, pixel, 0).r * pldPicture.w) discard;
+#endif
+  Layer layer;
+  layer.radiance = clamp(radiance, vec3(0.0f), vec3(1e20f));
+  layer.coverage = clamp(coverage, 0.0f, 1.0f);
+  layer.transmission = clamp(transmission, vec3(0.0f), vec3(1.0f));
+  layer.z = z;
+#if defined(STAGE_SOLIDS)
+  if (!isSolid(layer.coverage, layer.transmission)) discard;
+  solidRadiance = vec4(layer.radiance, z);
+  gl_FragDepth = 1e-7f / z;
+#else
+#ifdef SOLIDS
+  if (isSolid(layer.coverage, layer.transmission) || z > texelFetch(pldSolid, pixel, 0).a) discard;
+#endif
+#if defined(STAGE_FRONT)
+  frontZ = z;
+#else
+  Scatter scatter;
+  scatter.offset = vec2(offset.x, offset.y * pldPicture.y);
+  scatter.variance = variance;
+#if defined(PUBLISHED)
+  writePublished(layer, scatter, seamWeight());
+#else
+#ifdef FRONT_TAIL
+  if (isFront(z, texelFetch(pldFrontZ, pixel, 0).r))
+    writeFront(layer);
+  else
+    writeTail(layer, seamWeight());
+#else
+  writeSums(layer, seamWeight());
+#endif
+#ifdef SCATTER
+  writeScatter(layer, scatter, vec4(dispersion.x, dispersion.y * pldPicture.y, dispersion.z, dispersion.w * pldPicture.y));
+#endif
+#ifdef HALF
+  clampToHalf();
+#endif
+#endif
+#endif
+#endif
+}
+
+#ifdef SCATTER
+// Depth of what stands behind all layers, planar metres.
+float seamBackdropZ() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float z = texelFetch(pldOpaqueZ, pixel, 0).r;
+#ifdef SOLIDS
+  z = min(z, texelFetch(pldSolid, pixel, 0).a);
+#endif
+  return z;
+}
+
+RefractionSettings seamRefraction() {
+  RefractionSettings settings;
+  settings.mode = int(pldRefraction.x);
+  settings.distance = pldRefraction.y;
+  settings.focalX = pldRefraction.z;
+  settings.focalY = pldRefraction.w;
+  settings.orthographic = pldPicture.z != 0.0f ? 1 : 0;
+  return settings;
+}
+
+vec2 seamOffset(PldSurface surface, float eta) {
+  vec3 position = surface.position * pldWeight.w;
+  vec3 toEye = pldPicture.z != 0.0f ? vec3(0.0f, 0.0f, 1.0f) : normalize(-position);
+  return refractionOffset(seamRefraction(), position, toEye, surface.normal, eta, seamBackdropZ(),
+                          surface.thickness * pldWeight.w);
+}
+#endif
+
+void pldWriteFragment(PldSurface surface) {
+  vec2 offset = vec2(0.0f);
+  float variance = 0.0f;
+  vec4 dispersion = vec4(0.0f);
+  float z = -surface.position.z * pldWeight.w;
+#ifdef SCATTER
+#ifdef REFRACTS
+  // Entering faces only: along the ray that has not been bent, back faces would reflect all.
+  if (gl_FrontFacing && surface.eta != 1.0f && pldRefraction.x != 0.0f) {
+    vec2 green = seamOffset(surface, surface.eta);
+    offset = recordedOffset(green);
+#ifdef DISPERSION
+    if (surface.etaRedBlue != vec2(surface.eta))
+      dispersion = vec4(seamOffset(surface, surface.etaRedBlue.x) - green,
+                        seamOffset(surface, surface.etaRedBlue.y) - green);
+#endif
+  }
+#endif
+#ifdef DIFFUSES
+  DiffusionSettings settings;
+  settings.k0 = pldDiffusion.x;
+  settings.k1 = pldDiffusion.y;
+  settings.netCoverage = 0;
+  settings.focalPixels = pldRefraction.z;
+  settings.orthographic = pldPicture.z != 0.0f ? 1 : 0;
+  if (z > 0.0f)
+    variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), clamp(surface.transmission, vec3(0.0f), vec3(1.0f)),
+                             clamp(surface.collimation, 0.0f, 1.0f), z, seamBackdropZ());
+#endif
+#endif
+  pldWriteLayer(surface.radiance * pldPicture.x, surface.coverage, surface.transmission, z, offset, variance, dispersion);
+}

@@ -1,0 +1,118 @@
+// The seam as text: it compiles as every GLSL that it is offered for, beside names that a host may have of its own.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/bridge/host.h"
+
+namespace pellucid::test {
+namespace {
+
+// A host's shader with names that the model's text uses too.
+const char* const kHostShader = R"(
+struct Layer { vec4 layer; };
+struct Scatter { float scatter; };
+uniform sampler2D background;
+uniform vec4 radianceSum;
+float meanOf(vec3 v) { return v.x; }
+float SCATTER_GREY = 1.0;
+in vec3 viewPosition;
+void main() {
+  Layer layer;
+  layer.layer = vec4(meanOf(viewPosition));
+  PldSurface surface = pldSurface(radianceSum.rgb + layer.layer.rgb * SCATTER_GREY, 0.5, vec3(0.9, 0.5, 0.2), viewPosition);
+  surface.normal = normalize(-viewPosition);
+  surface.eta = 1.0 / 1.5;
+  surface.etaRedBlue = vec2(1.0 / 1.49, 1.0 / 1.51);
+  surface.collimation = 0.5;
+  pldWriteFragment(surface);
+}
+)";
+const char* const kHostVertex = R"(
+in vec3 position;
+out vec3 viewPosition;
+void main() {
+  viewPosition = position;
+  gl_Position = vec4(position, 1.0);
+}
+)";
+
+TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
+  GlContext context;
+  GLint most = 0;
+  const char* shading = reinterpret_cast<const char*>(glGetString(GL_SHADING_LANGUAGE_VERSION));
+  most = static_cast<GLint>(100 * std::atof(shading) + 0.5);
+  Host host(16, 16);
+  struct Case {
+    pld_method method;
+    pld_tier tier;
+    uint32_t features;
+  };
+  constexpr uint32_t all = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
+                           PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS;
+  const Case cases[] = {{PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0},
+                        {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, all},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, PLD_FEATURE_DIFFUSION},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION | PLD_FEATURE_SOLIDS},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, 0},
+                        {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0},
+                        {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS}};
+  int compiled = 0, skipped = 0;
+  for (const Case& one : cases)
+    for (const pld_depth depth : {PLD_DEPTH_DEVICE, PLD_DEPTH_LINEAR}) {
+      pld_create_info info = host.info();
+      info.method = one.method;
+      info.tier = one.tier;
+      info.features = one.features;
+      info.depth = depth;
+      pld_pass* pass = host.create(info);
+      ASSERT_NE(pass, nullptr);
+      for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS})
+        for (const int version : {330, 400, 410, 420, 430, 440, 450, 460}) {
+          const char* seam = nullptr;
+          const pld_status status = pld_glsl(pass, stage, version, &seam);
+          const bool has = stage == PLD_STAGE_LAYERS || (stage == PLD_STAGE_FRONT && one.method == PLD_METHOD_FRONT_TAIL) ||
+                           (stage == PLD_STAGE_SOLIDS && (one.features & PLD_FEATURE_SOLIDS));
+          ASSERT_EQ(status, has ? PLD_OK : PLD_ERROR_ARGUMENT);
+          if (!has) continue;
+          if (version > most) {
+            ++skipped;
+            continue;
+          }
+          const std::string first = "#version " + std::to_string(version) + " core\n";
+          const GLuint program = makeProgram(first + kHostVertex, first + seam + kHostShader);
+          ASSERT_NE(program, 0u) << "GLSL " << version << " stage " << stage;
+          EXPECT_EQ(pld_connect(pass, program), PLD_OK);
+          const GLuint block = glGetUniformBlockIndex(program, "PldFrame");
+          ASSERT_NE(block, GL_INVALID_INDEX);
+          GLint binding = 0;
+          glGetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_BINDING, &binding);
+          EXPECT_EQ(binding, static_cast<GLint>(info.uniform_binding));
+          glDeleteProgram(program);
+          ++compiled;
+        }
+      pld_destroy(&pass);
+    }
+  std::printf("seams compiled: %d; of versions above this driver's %d: %d\n", compiled, most, skipped);
+  EXPECT_GT(compiled, 100);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+// Twice in one shader, as includes happen to be.
+TEST(BridgeGlsl, TheTextGuardsItself) {
+  GlContext context;
+  Host host(16, 16);
+  pld_pass* pass = host.create(host.info());
+  ASSERT_NE(pass, nullptr);
+  const char* seam = nullptr;
+  ASSERT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, 330, &seam), PLD_OK);
+  const GLuint program = makeProgram(std::string("#version 330 core\n") + kHostVertex, std::string("#version 330 core\n") + seam + seam + kHostShader);
+  EXPECT_NE(program, 0u);
+  glDeleteProgram(program);
+  pld_destroy(&pass);
+}
+
+}  // namespace
+}  // namespace pellucid::test

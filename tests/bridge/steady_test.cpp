@@ -1,0 +1,181 @@
+// After pld_resize(): no GL object is made, none destroyed, and the library asks for no memory.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+#include <new>
+#include <string>
+
+#include "tests/bridge/host.h"
+// After epoxy, which declares the same.
+#include "engine_bridge/c/gl_functions.h"
+
+namespace {
+
+// Counting: only inside of a call of the library, and not inside of the driver that it calls.
+thread_local bool inLibrary = false;
+thread_local int inDriver = 0;
+std::size_t allocations = 0;
+std::map<std::string, int> calls;
+
+}  // namespace
+
+// Under a sanitizer memory is its own; operator new says enough there.
+#if !defined(__SANITIZE_ADDRESS__)
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* malloc(std::size_t size) {
+  if (inLibrary && inDriver == 0) ++allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  if (inLibrary && inDriver == 0) ++allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  if (inLibrary && inDriver == 0) ++allocations;
+  return __libc_realloc(memory, size);
+}
+}
+#endif
+
+namespace pellucid::test {
+namespace {
+
+// A function of GL that is counted and marks the driver's memory as the driver's.
+template <int place, class F>
+struct Counted;
+template <int place, class R, class... A>
+struct Counted<place, R (*)(A...)> {
+  static inline R (*real)(A...) = nullptr;
+  static inline const char* name = nullptr;
+  static R call(A... a) {
+    struct Inside {
+      Inside() { ++inDriver; }
+      ~Inside() { --inDriver; }
+    } inside;
+    ++calls[name];
+    return real(a...);
+  }
+};
+
+pld_proc counted(void*, const char* wanted) {
+  const std::string name = wanted;
+  const pld_proc real = procAddress(nullptr, wanted);
+  if (!real) return nullptr;
+#define PLD_COUNT(function, type)                               \
+  if (name == "gl" #function) {                                 \
+    using One = Counted<__COUNTER__, type>;                     \
+    One::real = reinterpret_cast<type>(real);                   \
+    One::name = "gl" #function;                                 \
+    return reinterpret_cast<pld_proc>(&One::call);              \
+  }
+  PLD_GL_REQUIRED(PLD_COUNT)
+  PLD_GL_OPTIONAL(PLD_COUNT)
+#undef PLD_COUNT
+  return real;
+}
+
+template <class F>
+pld_status inside(F f) {
+  inLibrary = true;
+  const pld_status status = f();
+  inLibrary = false;
+  return status;
+}
+
+bool makes(const std::string& name) {
+  for (const char* kind : {"glGen", "glCreate", "glDelete", "glTexImage", "glTexStorage", "glBufferData", "glCompileShader",
+                           "glLinkProgram", "glShaderSource"})
+    if (name.rfind(kind, 0) == 0) return true;
+  return false;
+}
+
+TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
+  struct Kind {
+    const char* what;
+    pld_method method;
+    pld_tier tier;
+    uint32_t features;
+    std::vector<pld_stage> stages;
+  };
+  const Kind kinds[] = {
+      {"float, all phenomena", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+       PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION |
+           PLD_FEATURE_SOLIDS,
+       {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS}},
+      {"half, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, 0, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
+      {"published", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION, {PLD_STAGE_LAYERS}}};
+  GlContext context;
+  Host host(48, 32);
+  for (const Kind& kind : kinds) {
+    pld_create_info info = host.info();
+    info.get_proc_address = counted;
+    info.log = [](void* user, pld_log_level level, const char* text) {
+      ++inDriver;  // the host's memory, not the library's
+      Log::add(user, level, text);
+      --inDriver;
+    };
+    info.method = kind.method;
+    info.tier = kind.tier;
+    info.features = kind.features;
+    info.flags = PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS;
+    pld_pass* pass = host.create(info);
+    ASSERT_NE(pass, nullptr);
+    int made = 0, total = 0;
+    for (const auto& [name, count] : calls) made += makes(name) ? count : 0;
+    EXPECT_GT(made, 10);  // the counter counts
+    calls.clear();
+    allocations = 0;
+    const pld_target target = host.target();
+    pld_target view = target;
+    view.view = PLD_VIEW_WEIGHT;
+    uint64_t value = 0;
+    for (int number = 0; number < 20; ++number) {
+      pld_frame frame = host.frame();
+      frame.width = 48 - number;  // the size of a frame may change
+      for (const pld_stage stage : kind.stages) {
+        ASSERT_EQ(inside([&] { return pld_begin(pass, stage, &frame); }), PLD_OK) << pld_message(pass);
+        ASSERT_EQ(inside([&] { return pld_end(pass); }), PLD_OK);
+      }
+      ASSERT_EQ(inside([&] { return pld_resolve(pass, &target); }), PLD_OK) << pld_message(pass);
+      ASSERT_EQ(inside([&] { return pld_resolve(pass, &view); }), PLD_OK) << pld_message(pass);
+      inside([&] { return pld_query(pass, PLD_VALUE_NS_RESOLVE, &value); });
+      frame.depth_texture = 77777;
+      EXPECT_EQ(inside([&] { return pld_begin(pass, kind.stages[0], &frame); }), PLD_ERROR_TEXTURE);
+      host.log.lines.clear();
+    }
+    std::string which;
+    made = 0;
+    for (const auto& [name, count] : calls) {
+      total += count;
+      if (makes(name)) made += count, which += name + " ";
+    }
+    std::printf("steady state, %s: 20 frames, %d GL calls, %d objects made or resized, %zu allocations\n", kind.what, total,
+                made, allocations);
+    EXPECT_EQ(made, 0) << which;
+    EXPECT_EQ(allocations, 0u);
+    EXPECT_GT(total, 1000);
+    pld_destroy(&pass);
+  }
+}
+
+// The counter sees an allocation that a call does make.
+TEST(BridgeSteady, TheCounterSeesAllocations) {
+#if !defined(__SANITIZE_ADDRESS__)
+  GlContext context;
+  Host host(16, 16);
+  pld_pass* pass = host.create(host.info());
+  ASSERT_NE(pass, nullptr);
+  allocations = 0;
+  const char* seam = nullptr;
+  EXPECT_EQ(inside([&] { return pld_glsl(pass, PLD_STAGE_LAYERS, 450, &seam); }), PLD_OK);
+  EXPECT_GT(allocations, 0u);
+  pld_destroy(&pass);
+#endif
+}
+
+}  // namespace
+}  // namespace pellucid::test
