@@ -56,9 +56,7 @@ Scene partOf(const Scene& scene, const std::vector<std::size_t>& group, std::siz
     const auto number = static_cast<std::size_t>(scene.instances[i].primitive);
     part.primitives[number] = scene.primitives[number];
     const Material& material = scene.materials[static_cast<std::size_t>(scene.primitives[number].material)];
-    for (const TextureRef* ref : {&material.baseColorTexture, &material.metallicRoughnessTexture,
-                                  &material.emissiveTexture, &material.transmissionTexture, &material.thicknessTexture})
-      keepTexture(*ref, scene, part);
+    for (const TextureRef* ref : material.textures()) keepTexture(*ref, scene, part);
   }
   return part;
 }

@@ -23,6 +23,8 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("BASE_TEXTURE", material.baseColorTexture.texture >= 0);
   define("METALLIC_ROUGHNESS_TEXTURE", lit && material.metallicRoughnessTexture.texture >= 0);
   define("NORMAL_TEXTURE", lit && material.normalTexture.texture >= 0);
+  define("SPECULAR_TEXTURE", lit && material.specularTexture.texture >= 0);
+  define("SPECULAR_COLOUR_TEXTURE", lit && material.specularColorTexture.texture >= 0);
   define("EMISSIVE_TEXTURE", lit && material.emissiveTexture.texture >= 0 && material.emission != glm::vec3(0.0f));
   define("TRANSMISSION_TEXTURE", transmits && material.transmissionTexture.texture >= 0);
   define("VOLUME", transmits && hasVolume(material));

@@ -34,17 +34,7 @@ GLint wrapOf(Wrap wrap) {
 }
 
 // Texture units, as shaders/gl/material.glsl numbers them. 5 and 6 are the frame's.
-constexpr int kReferences = 6;
-constexpr GLuint kUnits[kReferences] = {0, 1, 2, 3, 4, 10};
-
-void referencesOf(const Material& material, int references[kReferences]) {
-  references[0] = material.baseColorTexture.texture;
-  references[1] = material.metallicRoughnessTexture.texture;
-  references[2] = material.emissiveTexture.texture;
-  references[3] = material.transmissionTexture.texture;
-  references[4] = material.thicknessTexture.texture;
-  references[5] = material.normalTexture.texture;
-}
+constexpr GLuint kUnits[] = {0, 1, 2, 3, 4, 10, 8, 9};
 
 void uploadLevel(const Texture& texture, GLint level, const Image<glm::vec4>& texels) {
   glTextureSubImage2D(texture.name(), level, 0, 0, texels.width(), texels.height(), GL_RGBA, GL_FLOAT, texels.data());
@@ -64,10 +54,9 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   for (const Material& material : scene.materials) {
     if (material.transparent() == opaque) continue;
-    int references[kReferences];
-    referencesOf(material, references);
-    for (int slot = 0; slot < kReferences; ++slot) {
-      const Key key{references[slot], slot == 0 ? keptCut(material) : 0.0f};
+    const auto references = material.textures();
+    for (std::size_t slot = 0; slot < references.size(); ++slot) {
+      const Key key{references[slot]->texture, slot == 0 ? keptCut(material) : 0.0f};
       if (key.first < 0 || uploaded_.count(key)) continue;
       const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(key.first));
       const Image<glm::vec4>& texels = texture.texels;
@@ -134,15 +123,15 @@ void SceneTextures::makeMipmaps(const Key& key, Uploaded& uploaded) {
 }
 
 void SceneTextures::bind(const Material& material, TextureFilter filter) {
-  int references[kReferences];
-  referencesOf(material, references);
-  for (int i = 0; i < kReferences; ++i) {
-    if (references[i] < 0) continue;
-    const Key key{references[i], i == 0 ? keptCut(material) : 0.0f};
+  const auto references = material.textures();
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const int index = references[i]->texture;
+    if (index < 0) continue;
+    const Key key{index, i == 0 ? keptCut(material) : 0.0f};
     Uploaded& uploaded = uploaded_.at(key);
     if (filter == TextureFilter::mipmap && !uploaded.mipmaps) makeMipmaps(key, uploaded);
     glBindTextureUnit(kUnits[i], uploaded.texture.name());
-    glBindSampler(kUnits[i], samplerFor(scene_.textures[static_cast<std::size_t>(references[i])], filter).name());
+    glBindSampler(kUnits[i], samplerFor(scene_.textures[static_cast<std::size_t>(index)], filter).name());
   }
 }
 

@@ -39,7 +39,8 @@ bool canBeSolid(const Material& material, const ColourRange& colours, const Scen
     const TexelRange metallic = textures.range(material.metallicRoughnessTexture.texture);
     if (material.metallic * metallic.most.b >= 1.0f - kRounding || material.ior > kMirrorIor) return true;
     // A tinted reflection may leave nothing to enter.
-    if (material.specular > 1.0f - kRounding && material.specularColor != glm::vec3(1.0f)) return true;
+    const bool tinted = material.specularColor != glm::vec3(1.0f) || material.specularColorTexture.texture >= 0;
+    if (material.specular > 1.0f - kRounding && tinted) return true;
   }
   const float thickness = textures.range(material.thicknessTexture.texture).most.g;
   for (int channel = 0; channel < 3; ++channel) {

@@ -60,10 +60,8 @@ MaterialBlock materialBlock(const Material& material) {
                                            : 1.0f,
                       material.diffuseTransmission, eta,
                       material.thickness};
-  const TextureRef* references[] = {&material.baseColorTexture, &material.metallicRoughnessTexture,
-                                    &material.emissiveTexture,  &material.transmissionTexture,
-                                    &material.thicknessTexture, &material.normalTexture};
-  for (std::size_t slot = 0; slot < std::size(references); ++slot) putTransform(block, slot, *references[slot]);
+  const auto references = material.textures();
+  for (std::size_t slot = 0; slot < references.size(); ++slot) putTransform(block, slot, *references[slot]);
   return block;
 }
 

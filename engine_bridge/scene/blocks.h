@@ -17,11 +17,11 @@ struct MaterialBlock {
   glm::vec4 volume;      // attenuation colour; thickness over attenuation distance
   glm::vec4 covering;    // factor on coverage; 1 for additive; scale of normals; roughness that passes through
   glm::vec4 specular;    // tint head-on, strength
-  glm::vec4 uvTransforms[12];
+  glm::vec4 uvTransforms[16];
   glm::vec4 scattering;  // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
   glm::vec4 dispersion;  // eta of red, of blue
 };
-static_assert(sizeof(MaterialBlock) == 20 * 16);
+static_assert(sizeof(MaterialBlock) == 24 * 16);
 
 using shading::PunctualLight;
 static_assert(sizeof(PunctualLight) == 64);

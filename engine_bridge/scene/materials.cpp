@@ -81,8 +81,8 @@ struct MaterialReader {
     if (const auto specular = source.extension("KHR_materials_specular")) {
       material.specular = specular->number("specularFactor", 1.0f, 0.0f, 1.0f, notes);
       material.specularColor = specular->colour("specularColorFactor", glm::vec3(1.0f), 0.0f, kMostRadiance, notes);
-      if (specular->find("specularTexture") || specular->find("specularColorTexture"))
-        note("the textures of its specular extension are not used; its factors are");
+      material.specularTexture = texture(*specular, "specularTexture", TexelUse::data);
+      material.specularColorTexture = texture(*specular, "specularColorTexture", TexelUse::colour);
     }
     if (!infinite) return;
     // glTF's word for "the specular extension alone says what is reflected", an infinite index without it. The
@@ -93,6 +93,7 @@ struct MaterialReader {
     material.ior = static_cast<float>((1.0 + root) / (1.0 - root));
     material.specular = 1.0f;
     material.specularColor = glm::vec3(1.0f);
+    material.specularTexture = material.specularColorTexture = TextureRef{};
     note(fmt::format("ior 0 is taken as {:.6g}, which reflects as its specular factors say", material.ior));
   }
 

@@ -1,6 +1,7 @@
 // Plain data of a glTF scene, as the transparent pass and the ray tracer draw it. Nothing here knows GL, Embree or
 // glTF.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
@@ -61,12 +62,18 @@ struct Material {
   glm::vec3 specularColor{1.0f};  // its tint head-on, >= 0
   float normalScale = 1.0f;
   TextureRef baseColorTexture, metallicRoughnessTexture, emissiveTexture, transmissionTexture, thicknessTexture,
-      normalTexture;
+      normalTexture, specularTexture, specularColorTexture;
   // extras.pellucid and --set MATERIAL.key=value
   std::optional<float> collimation;  // [0,1]
   std::optional<float> coverage;     // [0,1], multiplies alpha
   bool additive = false, lowResolution = false, castsShadow = true;
   std::optional<bool> thin;  // overrides `volume`
+
+  // All of them, in the order of their places in MaterialBlock.
+  std::array<const TextureRef*, 8> textures() const {
+    return {&baseColorTexture, &metallicRoughnessTexture, &emissiveTexture, &transmissionTexture,
+            &thicknessTexture, &normalTexture,            &specularTexture, &specularColorTexture};
+  }
 
   // Goes through the transparent pass; opaque primitives belong to the G-buffer.
   bool transparent() const {

@@ -11,7 +11,7 @@ layout(std140, binding = 1) uniform MaterialValues {
   vec4 covering;            // r factor on coverage, g 1 for a material that only adds light, b scale of normals,
                             // a part of the roughness that light passing through meets
   vec4 specular;            // tint head-on, strength
-  vec4 uvTransforms[12];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
+  vec4 uvTransforms[16];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
   vec4 scattering;          // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
   vec4 dispersion;          // eta of red, of blue
 } material;
@@ -21,6 +21,8 @@ layout(binding = 1) uniform sampler2D metallicRoughnessTexture;
 layout(binding = 2) uniform sampler2D emissiveTexture;
 layout(binding = 3) uniform sampler2D transmissionTexture;
 layout(binding = 4) uniform sampler2D thicknessTexture;
+layout(binding = 8) uniform sampler2D specularTexture;
+layout(binding = 9) uniform sampler2D specularColorTexture;
 layout(binding = 10) uniform sampler2D normalTexture;
 
 layout(location = 0) in vec3 viewPosition;
@@ -81,6 +83,12 @@ Surface surfaceHere() {
   point.roughness = material.interface_.r;
   point.transmission = material.interface_.g;
   point.ior = material.interface_.b;
+#ifdef SPECULAR_TEXTURE
+  point.specular.a *= texture(specularTexture, uvOf(6)).a;
+#endif
+#ifdef SPECULAR_COLOUR_TEXTURE
+  point.specular.rgb *= texture(specularColorTexture, uvOf(7)).rgb;
+#endif
   vec3 attenuation = vec3(1.0f);
 #ifdef VERTEX_COLOUR
   point.base *= vertexColour;

@@ -67,14 +67,15 @@ TEST(Permutations, EverySurfaceCompilesAndLinks) {
 }
 
 // Beside the others, which they do not touch.
-TEST(Permutations, NormalTexturesAndEnvironmentsCompileAndLink) {
+TEST(Permutations, NormalAndSpecularTexturesAndEnvironmentsCompileAndLink) {
   GlContext context;
-  for (int bits = 0; bits < 1 << 5; ++bits) {
+  for (int bits = 0; bits < 1 << 6; ++bits) {
     auto bit = [bits](int i) { return (bits >> i & 1) != 0; };
     Material material;
     material.transmission = 1.0f;
     material.alphaMode = bit(0) ? AlphaMode::blend : AlphaMode::mask;
     if (bit(1)) material.normalTexture.texture = 0;
+    if (bit(5)) material.specularTexture.texture = material.specularColorTexture.texture = 0;
     gl::FrameFeatures frame;
     frame.environment = bit(2);
     frame.lights = bit(3);

@@ -102,15 +102,13 @@ TEST(Materials, IorZeroReflectsWhatTheSpecularExtensionSays) {
   EXPECT_NEAR(glass.ior, 1.5f, 1e-5f);
 }
 
-TEST(Materials, SpecularFactorsAreReadAndItsTexturesNoted) {
+TEST(Materials, SpecularFactorsAreRead) {
   EXPECT_TRUE(sceneWith(withExtension("KHR_materials_specular", Json::object())).notes.empty());
   const Scene scene = sceneWith(
       withExtension("KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 0.5, 0.25}}}));
   EXPECT_EQ(scene.materials.at(0).specular, 0.5f);
   EXPECT_EQ(scene.materials.at(0).specularColor, glm::vec3(1.0f, 0.5f, 0.25f));
   EXPECT_TRUE(scene.notes.empty());
-  const Scene textured = sceneWith(withExtension("KHR_materials_specular", {{"specularTexture", {{"index", 0}}}}));
-  EXPECT_TRUE(noted(textured, "textures of its specular extension are not used"));
 }
 
 TEST(Materials, WhatIsNotDrawnOfItIsNoted) {

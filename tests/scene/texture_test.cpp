@@ -65,12 +65,17 @@ TEST(Textures, TheSameImageAsDataStaysRaw) {
   builder.json["materials"][0]["emissiveTexture"] = {{"index", 0}};
   builder.json["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionTexture"] = {{"index", 0}};
   builder.json["materials"][0]["extensions"]["KHR_materials_volume"]["thicknessTexture"] = {{"index", 0}};
+  auto& specular = builder.json["materials"][0]["extensions"]["KHR_materials_specular"];
+  specular["specularTexture"] = {{"index", 0}};
+  specular["specularColorTexture"] = {{"index", 0}};
   const Scene scene = builder.load();
   ASSERT_EQ(scene.textures.size(), 2u) << "one for colour, one for data";
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.baseColorTexture.texture, material.emissiveTexture.texture);
   EXPECT_EQ(material.metallicRoughnessTexture.texture, material.transmissionTexture.texture);
   EXPECT_EQ(material.metallicRoughnessTexture.texture, material.thicknessTexture.texture);
+  EXPECT_EQ(material.specularTexture.texture, material.thicknessTexture.texture);
+  EXPECT_EQ(material.specularColorTexture.texture, material.emissiveTexture.texture);
   const Texture& data = scene.textures.at(static_cast<std::size_t>(material.transmissionTexture.texture));
   EXPECT_EQ(data.texels.at(0, 0), glm::vec4(128.0f / 255.0f, 64.0f / 255.0f, 32.0f / 255.0f, 1.0f));
   EXPECT_EQ(data.texels.at(1, 0), glm::vec4(0.0f, 1.0f, 1.0f / 255.0f, 1.0f));
