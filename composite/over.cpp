@@ -40,9 +40,28 @@ void mergeCoincident(double& light, double& opacity, double otherLight, double o
 }
 
 // A total order on all bits of the record, so that sums of coincident layers do not depend on list order either.
-bool before(const Fragment* a, const Fragment* b) {
-  if (a->z != b->z) return a->z < b->z;
-  return std::memcmp(a, b, sizeof(Fragment)) < 0;
+struct Place {
+  float z;  // of the fragment, which sorting reads most
+  const Fragment* fragment;
+};
+bool before(const Place& a, const Place& b) {
+  if (a.z != b.z) return a.z < b.z;
+  return std::memcmp(a.fragment, b.fragment, sizeof(Fragment)) < 0;
+}
+
+// By insertion, which is the quickest for as few as most pixels have.
+void sortPlaces(std::vector<Place>& places) {
+  constexpr std::size_t kFew = 32;
+  if (places.size() > kFew) {
+    std::sort(places.begin(), places.end(), before);
+    return;
+  }
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const Place moved = places[i];
+    std::size_t k = i;
+    for (; k > 0 && before(moved, places[k - 1]); --k) places[k] = places[k - 1];
+    places[k] = moved;
+  }
 }
 
 Layer layerOf(const Fragment& fragment) {
@@ -56,7 +75,7 @@ void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
                      const std::vector<std::uint8_t>* only) {
   const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
-    std::vector<const Fragment*> sorted;
+    std::vector<Place> sorted;
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < lists.window.width(); ++x) {
         const auto pixel =
@@ -68,19 +87,19 @@ void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
         for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
           const Fragment& fragment = lists.fragments[i];
           if (fragment.z <= solid.a && !shading::isSolid(fragment.coverage, fragment.transmission))
-            sorted.push_back(&fragment);
+            sorted.push_back({fragment.z, &fragment});
         }
         if (sorted.empty() && !hasSolid) continue;
-        std::sort(sorted.begin(), sorted.end(), before);
+        sortPlaces(sorted);
 
         dvec3 light = hasSolid ? dvec3(glm::vec3(solid)) : dvec3(0.0);
         dvec3 transmission = hasSolid ? dvec3(0.0) : dvec3(1.0);
         for (std::size_t end = sorted.size(); end > 0;) {
           std::size_t begin = end - 1;
-          while (begin > 0 && sorted[begin - 1]->z == sorted[begin]->z) --begin;
-          Layer layer = layerOf(*sorted[begin]);
+          while (begin > 0 && sorted[begin - 1].z == sorted[begin].z) --begin;
+          Layer layer = layerOf(*sorted[begin].fragment);
           for (std::size_t k = begin + 1; k < end; ++k) {
-            const Layer other = layerOf(*sorted[k]);
+            const Layer other = layerOf(*sorted[k].fragment);
             for (int c = 0; c < 3; ++c)
               mergeCoincident(layer.light[c], layer.opacity[c], other.light[c], other.opacity[c]);
           }
@@ -90,7 +109,7 @@ void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
         }
         veil.light.at(left + x, top + y) = glm::vec3(light);
         veil.transmission.at(left + x, top + y) = glm::vec3(transmission);
-        veil.frontZ.at(left + x, top + y) = sorted.empty() ? solid.a : std::min(sorted.front()->z, solid.a);
+        veil.frontZ.at(left + x, top + y) = sorted.empty() ? solid.a : std::min(sorted.front().z, solid.a);
         veil.touched.at(left + x, top + y) = 1;
       }
   });

@@ -48,7 +48,7 @@ void composite(const CompositeFlags& flags) {
   Stages stages;
   flags.shadow.check();
   RenderSettings settings;
-  settings.listMethod = flags.method.listMethod();
+  const std::optional<ChosenMethod> chosen = flags.method.listMethod();
   settings.stochastic = flags.stochastic.settings(flags.method.method, flags.samples, flags.shadow.mapped());
   settings.lookup = flags.lookup.settings();
   const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.shadow.exact());
@@ -77,6 +77,7 @@ void composite(const CompositeFlags& flags) {
   settings.pass.environment = shot->environment;
   flags.scene.applyTo(settings.pass);
   flags.method.applyTo(settings.pass, shot->camera);
+  useMethod(chosen, settings);
   flags.scatter.applyTo(settings.pass);
 
   // What works from lists of every fragment has no low resolution.

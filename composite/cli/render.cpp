@@ -150,6 +150,17 @@ std::string weightFlags(const shading::WeightSettings& weight) {
 
 }  // namespace
 
+void useMethod(const std::optional<ChosenMethod>& chosen, RenderSettings& settings) {
+  settings.listMethod.reset();
+  if (!chosen || chosen->name == "weighted") return;
+  if (chosen->name == "blended") {
+    settings.pass.weight.kind = shading::PLD_WEIGHT_UNIFORM;
+    settings.pass.normalisation = shading::PLD_NORMALISE_SPECTRAL;
+    return;
+  }
+  settings.listMethod = chosen;
+}
+
 void addStatistics(const PassStatistics& statistics, RenderCounts& counts) {
   counts.triangles = statistics.triangles;
   counts.chunks += statistics.chunks;
@@ -215,6 +226,7 @@ void fitShotWeight(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource
     WeightProbes probes(gbuffer, kProbes);
     PassSettings centre = settings;
     centre.sample = {0.5, 0.5};
+    centre.probeCell = probes.cell();
     eachList(pass, deep, gbuffer, centre, VolumeRule::midDepth, [&](const FragmentLists& tile) { probes.add(tile); });
     return fitWeight(probes, settings.weight, settings.normalisation);
   });

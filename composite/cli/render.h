@@ -36,6 +36,10 @@ struct RenderCounts {
   std::vector<std::string> pruned = {};
 };
 
+// Asks for a method of the table; nothing asks for none of them. `weighted` and `blended` are the transparent pass's
+// own sums: they need no lists. After the flags have set the pass's weight.
+void useMethod(const std::optional<ChosenMethod>& chosen, RenderSettings& settings);
+
 // Adds what one pass did.
 void addStatistics(const PassStatistics& statistics, RenderCounts& counts);
 

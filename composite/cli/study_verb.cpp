@@ -185,9 +185,14 @@ void study(const StudyFlags& flags) {
     RenderSettings how = settings;
     how.samples = candidate.samples;
     how.sortedTruth = candidate.sorted;
-    how.listMethod = candidate.chosen;
+    useMethod(candidate.chosen, how);
     how.stochastic = candidate.stochastic;
     how.exactSums = candidate.precision == "exact";
+    if (candidate.precision == "published") {
+      how.pass.tier = SumsTier::published;
+      how.pass.normalisation = shading::PLD_NORMALISE_PUBLISHED;
+      how.resolve.selfModulation = true;
+    }
     return how;
   };
   // Untimed runs first: shaders compile on first use.
@@ -258,10 +263,10 @@ void addStudy(CLI::App& app) {
       ->allow_extra_args(false)
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  verb->add_option("--precision", flags->precisions, "Tiers of phenomenological to compare: float, exact")
+  verb->add_option("--precision", flags->precisions, "Tiers of phenomenological to compare: float, exact, published")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"float", "exact"}))
+      ->check(CLI::IsMember({"float", "exact", "published"}))
       ->capture_default_str();
   flags->scatter.addTo(*verb);
   flags->lookup.addTo(*verb);

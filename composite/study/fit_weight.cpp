@@ -9,20 +9,9 @@
 
 #include "composite/over.h"
 #include "gbuffer/accum.h"
+#include "shaders/probe.h"
 
 namespace pellucid {
-namespace {
-
-// Which pixel of a cell is its probe: an integer hash, so that no pattern of the picture can hide between them.
-std::uint32_t hashOf(int cellX, int cellY) {
-  std::uint32_t h = static_cast<std::uint32_t>(cellX) * 0x9e3779b1u ^ static_cast<std::uint32_t>(cellY) * 0x85ebca77u;
-  h = (h ^ (h >> 15)) * 0x2c1b3c6du;
-  h = (h ^ (h >> 12)) * 0x297a2d39u;
-  return h ^ (h >> 15);
-}
-
-}  // namespace
-
 WeightProbes::WeightProbes(const GBuffer& gbuffer, std::size_t most) : gbuffer_(gbuffer), cell_(1) {
   while (gbuffer.beauty.size() / (static_cast<std::size_t>(cell_) * static_cast<std::size_t>(cell_)) > most) ++cell_;
 }
@@ -31,9 +20,7 @@ void WeightProbes::add(const FragmentLists& tile) {
   for (int y = 0; y < tile.window.height(); ++y)
     for (int x = 0; x < tile.window.width(); ++x) {
       const int px = tile.window.x0 + x - gbuffer_.data.x0, py = tile.window.y0 + y - gbuffer_.data.y0;
-      const std::uint32_t hash = hashOf(px / cell_, py / cell_);
-      const auto side = static_cast<std::uint32_t>(cell_);
-      if (px % cell_ != static_cast<int>(hash % side) || py % cell_ != static_cast<int>(hash / side % side)) continue;
+      if (!shading::isProbe({px, py}, cell_)) continue;
       const std::size_t pixel =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(tile.window.width()) + static_cast<std::size_t>(x);
       const glm::vec4 behind = gbuffer_.beauty.at(px, py);
@@ -45,7 +32,7 @@ void WeightProbes::add(const FragmentLists& tile) {
     }
 }
 
-// The probes as one row of pixels, and the truth of them.
+// The probes as a picture, the end of its last row empty, and the truth of them.
 struct WeightFitter {
   FragmentLists lists;
   std::vector<glm::dvec3> truth;
@@ -54,28 +41,29 @@ struct WeightFitter {
   WeightFit& fit;
 
   WeightFitter(const WeightProbes& from, int rule, WeightFit& result) : probes(from), normalisation(rule), fit(result) {
-    const int count = static_cast<int>(from.count());
-    lists.window = {0, 0, count, 1};
-    lists.solid = Image<glm::vec4>(count, 1);
+    constexpr int kWidth = 64;
+    lists.window = {0, 0, kWidth, (static_cast<int>(from.count()) + kWidth - 1) / kWidth};
+    lists.solid = Image<glm::vec4>(lists.window.width(), lists.window.height(), glm::vec4(0, 0, 0, INFINITY));
     lists.offsets.assign(1, 0);
     for (std::size_t i = 0; i < from.count(); ++i) {
       lists.fragments.insert(lists.fragments.end(), from.fragments_[i].begin(), from.fragments_[i].end());
       lists.offsets.push_back(lists.fragments.size());
       lists.solid[i] = from.solids_[i];
     }
-    Veil veil(count, 1);
+    lists.offsets.resize(lists.solid.size() + 1, lists.fragments.size());
+    Veil veil(lists.window.width(), lists.window.height());
     compositeSorted(lists, lists.window, veil);
     truth = shown(veil);
   }
   std::vector<glm::dvec3> shown(const Veil& veil) const {
     std::vector<glm::dvec3> pictures;
-    for (std::size_t i = 0; i < veil.light.size(); ++i)
+    for (std::size_t i = 0; i < probes.count(); ++i)
       pictures.push_back(glm::dvec3(veil.light[i]) +
                          glm::dvec3(veil.transmission[i]) * glm::dvec3(probes.backgrounds_[i]));
     return pictures;
   }
   double attempt(const shading::WeightSettings& weight) {
-    Veil veil(lists.window.width(), 1);
+    Veil veil(lists.window.width(), lists.window.height());
     compositeBy(*chooseMethod("weighted"), {0, weight, normalisation}, lists, lists.window, veil);
     const std::vector<glm::dvec3> got = shown(veil);
     double sum = 0;

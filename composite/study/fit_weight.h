@@ -16,6 +16,7 @@ class WeightProbes {
   WeightProbes(const GBuffer& gbuffer, std::size_t most);
   void add(const FragmentLists& tile);
   std::size_t count() const { return backgrounds_.size(); }
+  int cell() const { return cell_; }  // edge in pixels; see shaders/shared/probe.glsl
 
  private:
   friend struct WeightFitter;

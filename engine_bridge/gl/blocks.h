@@ -12,13 +12,13 @@ struct FrameBlock {
   glm::mat4 clipFromView{1.0f};
   glm::vec4 surroundings{0.0f};
   float weightNear = 0, weightFar = 0, weightExponent = 0, depthFactor = 1;
-  std::int32_t bandX = 0, bandY = 0, bandWidth = 0, bandUnused = 0;
+  std::int32_t bandX = 0, bandY = 0, bandWidth = 0, probeCell = 1;
   std::int32_t lightCount = 0, orthographic = 0;
   glm::vec2 viewport{0.0f};       // pixels
   glm::vec4 refraction{0.0f};     // PLD_REFRACT_*; metres (fixed); focal length in x and y, pixels
   glm::vec4 diffusion{0.0f};      // k0, k1 metres; 1 for net coverage; how much occlusion darkens direct light
   glm::mat4 worldFromView{1.0f};  // turns only
-  std::int32_t atlasEdge = 0, atlasUnused[3] = {};
+  std::int32_t atlasEdge = 0, unused = 0, originX = 0, originY = 0;
 };
 static_assert(sizeof(FrameBlock) == 240);
 static_assert(offsetof(FrameBlock, weightNear) == 80 && offsetof(FrameBlock, bandX) == 96);

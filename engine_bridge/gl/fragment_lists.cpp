@@ -29,11 +29,23 @@ std::size_t largestBlock() {
 
 class BandWriter {
  public:
-  BandWriter() : fragments_(Buffer::make()), cursors_(Buffer::make()), dispersion_(Buffer::make()) {}
   void write(Renderer& renderer, const Image<float>& count, const Window& band, FragmentLists& lists);
 
  private:
-  Buffer fragments_, cursors_, dispersion_;
+  // A buffer that only grows: fresh memory for every band costs more than the lists themselves.
+  struct Room {
+    Buffer buffer = Buffer::make();
+    GLsizeiptr bytes = 0;
+    void atLeast(GLsizeiptr wanted, GLuint binding, const char* what) {
+      if (wanted > bytes) {
+        glNamedBufferData(buffer.name(), wanted, nullptr, GL_STREAM_READ);
+        checkGl(what);
+        bytes = wanted;
+      }
+      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name());
+    }
+  };
+  Room fragments_, cursors_, dispersion_;
   std::vector<std::uint32_t> places_;
 };
 
@@ -50,25 +62,19 @@ void BandWriter::write(Renderer& renderer, const Image<float>& count, const Wind
 
   const auto bytes = static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Fragment));
   const auto cursorBytes = static_cast<GLsizeiptr>(places_.size() * sizeof(std::uint32_t));
-  glNamedBufferData(fragments_.name(), bytes, nullptr, GL_STREAM_READ);
-  glNamedBufferData(cursors_.name(), cursorBytes, places_.data(), GL_STREAM_READ);
-  checkGl("making room for fragment lists");
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, fragments_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, cursors_.name());
+  fragments_.atLeast(bytes, 3, "making room for fragment lists");
+  cursors_.atLeast(cursorBytes, 4, "making room for the cursors of fragment lists");
+  glNamedBufferSubData(cursors_.buffer.name(), 0, cursorBytes, places_.data());
   lists.dispersion.resize(renderer.disperses() ? lists.fragments.size() : 0);
   const auto dispersionBytes = static_cast<GLsizeiptr>(lists.dispersion.size() * sizeof(glm::vec4));
-  if (lists.disperses()) {
-    glNamedBufferData(dispersion_.name(), dispersionBytes, nullptr, GL_STREAM_READ);
-    checkGl("making room for dispersion");
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, dispersion_.name());
-  }
+  if (lists.disperses()) dispersion_.atLeast(dispersionBytes, 7, "making room for dispersion");
   renderer.setBand(band);
   renderer.targets().beginNothing();
   renderer.draw(Output::list, {band});
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(fragments_.name(), 0, bytes, lists.fragments.data());
-  glGetNamedBufferSubData(cursors_.name(), 0, cursorBytes, places_.data());
-  if (lists.disperses()) glGetNamedBufferSubData(dispersion_.name(), 0, dispersionBytes, lists.dispersion.data());
+  glGetNamedBufferSubData(fragments_.buffer.name(), 0, bytes, lists.fragments.data());
+  glGetNamedBufferSubData(cursors_.buffer.name(), 0, cursorBytes, places_.data());
+  if (lists.disperses()) glGetNamedBufferSubData(dispersion_.buffer.name(), 0, dispersionBytes, lists.dispersion.data());
   checkGl("reading fragment lists back");
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (places_[i] != lists.offsets[i + 1]) throw std::logic_error("fragments counted and fragments listed differ");
@@ -122,9 +128,9 @@ void listFragments(Renderer& renderer, std::size_t fragmentBytes,
   const std::size_t blockLimit = largestBlock() / sizeof(Fragment);
   const std::size_t most = std::clamp<std::size_t>(fragmentBytes / sizeof(Fragment), 1, blockLimit);
   BandWriter writer;
+  FragmentLists lists;
   for (const Window& tile : tiles)
     for (const Window& window : bandsOf(count, tile, most)) {
-      FragmentLists lists;
       if (window.width() == 1 && window.height() == 1 && countAt(count, window.x0, window.y0) > blockLimit)
         throw ResourceError(fmt::format("GL: {} transparent fragments on one pixel: the device lists at most {}",
                                         countAt(count, window.x0, window.y0), blockLimit));

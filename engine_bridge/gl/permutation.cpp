@@ -61,6 +61,7 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   }
   defines.emplace_back("EXACT_COVERAGE");
   if (frame.solids) defines.emplace_back("SOLIDS");
+  if (frame.probes && (output == Output::count || output == Output::list)) defines.emplace_back("PROBES");
   if (frame.scatters() && output != Output::count) defines.emplace_back("SCATTER");
   if (frame.disperses && output != Output::count) defines.emplace_back("DISPERSION");
   return defines;

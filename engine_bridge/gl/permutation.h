@@ -27,6 +27,7 @@ struct FrameFeatures {
   bool disperses = false;                   // refracts, by wavelength
   bool occludes = false;                    // there are occluders for cut-out materials
   int rimForm = -1;                         // PLD_OCCLUSION_* of their rims; < 0 leaves rims open
+  bool probes = false;                      // lists of some pixels alone
   bool prune = true;                        // else every material gets the text of every phenomenon
 
   bool scatters() const { return refracts || diffuses; }

@@ -123,6 +123,7 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   const Needs needs = needsOf(settings);
   const bool all = !settings.scatter.prune;
   features_.prune = settings.scatter.prune;
+  features_.probes = settings.probeCell > 1;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
   features_.environment = settings.environment != nullptr;
@@ -213,6 +214,9 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
                       settings.occlusion.directShare};
   frame_.viewport = glm::vec2(superTile.width(), superTile.height());
   frame_.worldFromView = glm::mat4(glm::mat3(glm::transpose(glm::dmat3(camera_.viewFromWorld))));
+  frame_.probeCell = settings.probeCell;
+  frame_.originX = superTile.x0;
+  frame_.originY = superTile.y0;
   frame_.atlasEdge = settings.environment ? settings.environment->edge : 0;
   uploadSurroundings();
   uploadFrame();

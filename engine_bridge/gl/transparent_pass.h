@@ -68,6 +68,7 @@ struct PassSettings {
   ScatterSettings scatter;
   OcclusionSettings occlusion;
   LayerChoice layers = LayerChoice::all;
+  int probeCell = 1;  // above 1, lists hold one pixel of every cell of this edge alone: shaders/shared/probe.glsl
 };
 
 struct PassStatistics {

@@ -7,7 +7,7 @@ layout(std140, binding = 0) uniform Frame {
   float weightFar;       // metres
   float weightExponent;
   float depthFactor;     // 1 + relative precision of the opaque depth
-  ivec4 band;            // list passes: x, y of the band's top left pixel, its width
+  ivec4 band;            // list passes: x, y of the band's top left pixel, its width; edge of a probe's cell
   int lightCount;
   int orthographic;
   vec2 viewport;         // pixels
@@ -15,6 +15,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 diffusion;        // k0, k1 metres; 1 for net coverage; how much occlusion darkens direct light
   mat4 worldFromView;    // turns only
   int atlasEdge;         // of the surroundings' level 0, texels
+  ivec2 origin;          // of the pass's pixel 0, 0 in the data window
 };
 
 // Row 0 is the top row: the pass sets the clip origin to the upper left.

@@ -9,6 +9,9 @@
 #endif
 #include "gl/occlusion.glsl"
 #include "gl/scatter.glsl"
+#ifdef PROBES
+#include "shared/probe.glsl"
+#endif
 #if defined(OUTPUT_SUMS)
 #include "gl/sums_output.glsl"
 #elif defined(OUTPUT_PUBLISHED)
@@ -29,6 +32,9 @@ void main() {
 #endif
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float z = -viewPosition.z;
+#ifdef PROBES
+  if (!isProbe(origin + pixel, band.w)) discard;
+#endif
   if (outsideTriangle()) discard;
   if (!(z > 0.0f) || !(surface.coverage > 0.0f)) discard;
   if (z > texelFetch(opaqueZ, pixel, 0).r * depthFactor) discard;

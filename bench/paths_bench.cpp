@@ -1,0 +1,85 @@
+// What exactness costs as a user runs it: sixteen panes that each cover 1920 x 1080, through `composite` by the truth, by
+// the weighted sums, and by sums whose weight is fitted to the truth. Medians of the stages between reading and writing.
+//   bench_paths [LAYERS]
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tests/support/program.h"
+#include "tests/support/shots.h"
+
+namespace pellucid {
+namespace {
+
+using namespace test;
+constexpr int kWidth = 1920, kHeight = 1080, kRuns = 5;
+
+void require(const Ended& ended) {
+  if (ended.code != 0) throw std::runtime_error(ended.err);
+}
+
+std::string makeShot(int layers) {
+  const std::string folder = freshFolder("bench_paths");
+  std::vector<Quad> panes;
+  for (int i = 0; i < layers; ++i) {
+    // Out of order in depth, as scenes are.
+    const float z = -2.0f - static_cast<float>(i * 7 % layers), half = -z;
+    const float tint = static_cast<float>(i % 5) * 0.2f;
+    panes.push_back({{-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0}, unlit(tint, 0.5f, 1.0f - tint, 0.25f)});
+  }
+  writeGlb(folder + "/panes.glb", panes);
+  const std::string wall = std::to_string(kWidth) + "x" + std::to_string(kHeight);
+  const std::string command = "oiiotool --pattern constant:color=.8,.7,.6,100 " + wall +
+                              " 4 --chnames R,G,B,Z -d float -o " + folder + "/wall.exr";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("oiiotool could not write the wall");
+  return folder;
+}
+
+double medianSeconds(const std::string& folder, const std::vector<std::string>& flags) {
+  std::vector<double> runs;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<std::string> arguments = {"composite",          folder + "/wall.exr", folder + "/panes.glb", "-o",
+                                          folder + "/out.exr", "--aa",               "1",                   "--stats",
+                                          "--json"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    const Ended ended = runProgram(arguments);
+    require(ended);
+    double sum = 0;
+    const auto report = nlohmann::json::parse(ended.out);
+    for (const auto& [stage, seconds] : report["statistics"]["seconds"].items())
+      if (stage != "read scene" && stage != "read picture" && stage != "write" && stage != "GL context")
+        sum += seconds.get<double>();
+    runs.push_back(sum);
+  }
+  std::sort(runs.begin(), runs.end());
+  return runs[kRuns / 2];
+}
+
+}  // namespace
+}  // namespace pellucid
+
+int main(int count, char** arguments) {
+  try {
+    const int layers = count > 1 ? std::atoi(arguments[1]) : 16;
+    if (layers < 1) throw std::runtime_error("expected a number of layers");
+    const std::string folder = pellucid::makeShot(layers);
+    double weighted = 0;
+    const std::pair<const char*, std::vector<std::string>> paths[] = {
+        {"weighted", {"--method", "weighted"}},
+        {"weighted, fitted weight", {"--method", "weighted", "--weight", "auto"}},
+        {"over", {"--method", "over"}},
+        {"front+tail", {"--method", "front+tail"}},
+        {"exact sums", {"--precision", "exact"}}};
+    for (const auto& [name, flags] : paths) {
+      const double seconds = pellucid::medianSeconds(folder, flags);
+      if (weighted == 0) weighted = seconds;
+      std::printf("%-24s %d layers, 1920 x 1080: %6.2f s, %.2f times weighted\n", name, layers, seconds, seconds / weighted);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_paths: %s\n", error.what());
+    return 1;
+  }
+}
