@@ -1,9 +1,11 @@
 # Every room is built with these. Contraction is off so that CPU and GL can agree bit for bit.
 add_library(pellucid_options INTERFACE)
 target_compile_options(pellucid_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Werror -Werror=double-promotion -Werror=float-conversion
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror;-Werror=double-promotion;-Werror=float-conversion>"
   -ffp-contract=off -fno-fast-math)
-target_include_directories(pellucid_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_features(pellucid_options INTERFACE cxx_std_20)
+target_include_directories(pellucid_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/pellucid-rooms>)
 
 option(PELLUCID_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
 if(PELLUCID_SANITIZE)

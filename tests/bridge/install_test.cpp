@@ -1,0 +1,91 @@
+// From a clean install prefix: what the library shows, and that others can build against it.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+#include <set>
+
+#include "tests/support/program.h"
+
+namespace pellucid::test {
+namespace {
+
+// What a shell says, and its exit code.
+Ended shell(const std::string& command, const std::string& folder) {
+  Ended ended;
+  const std::string log = folder + "/log.txt";
+  const int status = std::system(("(" + command + ") > '" + log + "' 2>&1").c_str());
+  ended.code = status == -1 ? -1 : WEXITSTATUS(status);
+  ended.out = slurp(log);
+  return ended;
+}
+
+std::string installed() {
+  const std::string folder =
+      freshFolder(std::string("bridge-install-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const Ended ended = shell("cmake --install '" PELLUCID_BINARY_DIR "' --prefix '" + folder + "/prefix'", folder);
+  EXPECT_EQ(ended.code, 0) << ended.out;
+  return folder;
+}
+
+bool sanitized() {
+#if defined(__SANITIZE_ADDRESS__)
+  return true;
+#else
+  return false;
+#endif
+}
+
+TEST(BridgeInstall, TheLibraryShowsItsInterfaceAndNothingElse) {
+  const std::string folder = installed();
+  const Ended listed = shell("nm -D --defined-only --format=posix '" + folder + "/prefix/lib/libpellucid_c.so'", folder);
+  ASSERT_EQ(listed.code, 0) << listed.out;
+  std::set<std::string> shown, declared;
+  std::istringstream lines(listed.out);
+  for (std::string line; std::getline(lines, line);) shown.insert(line.substr(0, line.find(' ')));
+  const std::string header = slurp(folder + "/prefix/include/pellucid/pellucid.h");
+  const std::regex function(R"(PLD_API [^;(]*?(pld_\w+)\()");
+  for (std::sregex_iterator i(header.begin(), header.end(), function), end; i != end; ++i) declared.insert((*i)[1]);
+  std::printf("libpellucid_c.so: %zu symbols shown, %zu declared\n", shown.size(), declared.size());
+  EXPECT_EQ(shown, declared);
+  EXPECT_EQ(declared.size(), 12u);
+  const Ended needed = shell("objdump -p '" + folder + "/prefix/lib/libpellucid_c.so' | grep NEEDED", folder);
+  for (const char* library : {"libGL", "libEGL", "libepoxy", "libOpen", "libfmt"})
+    EXPECT_EQ(needed.out.find(library), std::string::npos) << needed.out;
+}
+
+TEST(BridgeInstall, AnOutsideCmakeProjectBuildsAndRenders) {
+  if (sanitized()) GTEST_SKIP() << "a library built with a sanitizer wants programs built with it";
+  const std::string folder = installed(), build = folder + "/cmake";
+  const Ended built = shell("cmake -S '" PELLUCID_SOURCE_DIR "/tests/bridge/outside' -B '" + build + "' -DROOMS=ON -DCMAKE_PREFIX_PATH='" +
+                                folder + "/prefix' && cmake --build '" + build + "'",
+                            folder);
+  ASSERT_EQ(built.code, 0) << built.out;
+  const Ended drawn = shell("'" + build + "/outside' && '" + build + "/rooms'", folder);
+  EXPECT_EQ(drawn.code, 0) << drawn.out;
+  EXPECT_NE(drawn.out.find("rendered"), std::string::npos) << drawn.out;
+  EXPECT_NE(drawn.out.find("composited"), std::string::npos) << drawn.out;
+}
+
+TEST(BridgeInstall, AnOutsidePkgConfigProjectBuildsAndRenders) {
+  if (sanitized()) GTEST_SKIP() << "a library built with a sanitizer wants programs built with it";
+  const std::string folder = installed();
+  const std::string config = "PKG_CONFIG_PATH='" + folder + "/prefix/lib/pkgconfig' pkg-config --cflags --libs ";
+  const Ended built = shell("cc -std=c99 -Wall -Wextra -Wpedantic -Werror -o '" + folder + "/outside' '" PELLUCID_SOURCE_DIR
+                            "/tests/bridge/outside/outside.c' $(" + config + "pellucid) -lEGL -lGL -lm -Wl,-rpath,'" + folder +
+                                "/prefix/lib'",
+                            folder);
+  ASSERT_EQ(built.code, 0) << built.out;
+  const Ended drawn = shell("'" + folder + "/outside'", folder);
+  EXPECT_EQ(drawn.code, 0) << drawn.out;
+  EXPECT_NE(drawn.out.find("rendered"), std::string::npos) << drawn.out;
+  const Ended rooms = shell("c++ -o '" + folder + "/rooms' '" PELLUCID_SOURCE_DIR "/tests/bridge/outside/rooms.cpp' $(" + config +
+                                "pellucid-rooms) && '" + folder + "/rooms'",
+                            folder);
+  EXPECT_EQ(rooms.code, 0) << rooms.out;
+  EXPECT_NE(rooms.out.find("composited"), std::string::npos) << rooms.out;
+}
+
+}  // namespace
+}  // namespace pellucid::test
