@@ -16,6 +16,7 @@ find_package(meshoptimizer CONFIG REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
+find_library(OPENVDB_LIBRARY openvdb REQUIRED)
 pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 
 # Debian's OpenImageIO names OpenCV's headers, which it does not depend on: keep only folders that exist.

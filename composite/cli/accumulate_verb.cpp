@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
 #include "composite/cli/render.h"
 #include "composite/cli/mixed.h"
@@ -9,6 +10,7 @@
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
+#include "composite/fog.h"
 #include "composite/fold_exact.h"
 #include "engine_bridge/gl/solid_hash.h"
 #include "gbuffer/errors.h"
@@ -25,6 +27,7 @@ struct AccumulateFlags {
   MethodFlags method;
   ScatterFlags scatter;
   FoliageFlags foliage;
+  FogFlags fog;
   LowResFlags lowRes;
   RunFlags run;
 };
@@ -38,6 +41,7 @@ OitPlanes exactPlanes(TransparentPass& pass, const PassSettings& settings, const
   planes.info.tier = "exact";
   pass.fragments(settings,
                  [&](const FragmentLists& tile) { foldExact(tile, settings.weight, settings.normalisation, planes); });
+  if (settings.fog) addFog(*settings.fog, shot.opaque.gbuffer, settings.sample, planes);
   planes.info.solidHash = gl::solidHash(planes.solid);
   return planes;
 }
@@ -45,7 +49,7 @@ OitPlanes exactPlanes(TransparentPass& pass, const PassSettings& settings, const
 void accumulate(const AccumulateFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.fog.traced());
   if (!shot->deep.empty())
     throw UsageError(fmt::format("{}: accumulate takes glTF only: found deep samples, which composite takes",
                                  shot->deep[0]->path()));
@@ -58,6 +62,8 @@ void accumulate(const AccumulateFlags& flags) {
   flags.scene.applyTo(settings);
   flags.method.applyTo(settings, shot->camera);
   flags.scatter.applyTo(settings);
+  settings.fog =
+      flags.fog.place(*shot, flags.read.unit, flags.method.isPublished() ? "--precision published" : "", stages);
   GlContext context(flags.scene.device);
   TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
   flags.foliage.applyTo(settings, &pass, shot->opaque.gbuffer, shot->camera, stages);
@@ -90,6 +96,7 @@ void addAccumulate(CLI::App& app) {
   flags->method.addTo(*verb, false);
   flags->scatter.addTo(*verb);
   flags->foliage.addTo(*verb);
+  flags->fog.addTo(*verb);
   flags->lowRes.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { accumulate(*flags); });

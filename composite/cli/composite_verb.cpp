@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
@@ -36,6 +37,7 @@ struct CompositeFlags {
   LowResFlags lowRes;
   RunFlags run;
   ShadowFlags shadow;
+  FogFlags fog;
   StochasticFlags stochastic;
   int samples = kDefaultSamples;
   std::optional<double> tolerance;
@@ -51,7 +53,8 @@ void composite(const CompositeFlags& flags) {
   const std::optional<ChosenMethod> chosen = flags.method.listMethod();
   settings.stochastic = flags.stochastic.settings(flags.method.method, flags.samples, flags.shadow.mapped());
   settings.lookup = flags.lookup.settings();
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.shadow.exact());
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages,
+                             flags.shadow.exact() || flags.fog.traced());
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
     throw UsageError(
@@ -88,6 +91,11 @@ void composite(const CompositeFlags& flags) {
                              : !shot->deep.empty() || shot->deepOpaque   ? "deep EXR"
                                                                          : "";
   settings.lowResolution = flags.lowRes.factorFor(shot->scene, listed);
+  settings.pass.fog = flags.fog.place(*shot, flags.read.unit,
+                                      flags.method.isPublished()  ? "--precision published"
+                                      : flags.systems != "off" ? "--systems"
+                                                               : "",
+                                      stages);
   std::unique_ptr<GlContext> context;
   const auto device = [&]() -> GlContext& {
     if (!context) stages.time("GL context", [&] { context = std::make_unique<GlContext>(flags.scene.device); });
@@ -194,6 +202,7 @@ void addComposite(CLI::App& app) {
   flags->lookup.addTo(*verb);
   flags->foliage.addTo(*verb);
   flags->shadow.addTo(*verb);
+  flags->fog.addTo(*verb);
   flags->stochastic.addTo(*verb);
   flags->lookup.addResolverTo(*verb);
   flags->lowRes.addTo(*verb);

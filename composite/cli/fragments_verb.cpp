@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
 #include "composite/cli/lists.h"
 #include "composite/cli/results.h"
@@ -21,6 +22,7 @@ struct FragmentsFlags {
   ReadFlags read;
   SceneFlags scene;
   FoliageFlags foliage;
+  FogFlags fog;
   RunFlags run;
 };
 
@@ -110,12 +112,13 @@ class RowGatherer {
 void fragmentsVerb(const FragmentsFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.fog.traced());
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   PassSettings settings;
   settings.surroundings = shot->surroundings;
   settings.environment = shot->environment;
   flags.scene.applyTo(settings);
+  settings.fog = flags.fog.place(*shot, flags.read.unit, "", stages);
 
   DeepHeader header;
   header.display = gbuffer.display;
@@ -157,6 +160,7 @@ void addFragments(CLI::App& app) {
   flags->read.addTo(*verb);
   flags->scene.addTo(*verb);
   flags->foliage.addTo(*verb);
+  flags->fog.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { fragmentsVerb(*flags); });
 }

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "composite/fog.h"
+
 namespace pellucid::cli {
 namespace {
 
@@ -20,11 +22,17 @@ void eachList(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& d
               const PassSettings& settings, VolumeRule rule, const std::function<void(const FragmentLists&)>& tile) {
   // A sample is held as up to 16 floats, then once more as a fragment.
   const std::uint64_t most = std::max<std::uint64_t>(settings.budgetBytes / (64 + sizeof(Fragment)), 1);
+  const auto veiled = [&](const FragmentLists& lists) {
+    if (settings.fog)
+      tile(withFog(*settings.fog, gbuffer, settings.sample, lists));
+    else
+      tile(lists);
+  };
   const auto merge = [&](const FragmentLists& lists) {
     if (deep.empty())
-      tile(lists);
+      veiled(lists);
     else
-      mergeDeep(lists, deep, gbuffer, rule, most, tile);
+      mergeDeep(lists, deep, gbuffer, rule, most, veiled);
   };
   if (pass)
     pass->fragments(settings, merge);

@@ -44,6 +44,7 @@ OitPlanes accumulateMixed(TransparentPass& pass, const PassSettings& settings, c
   statistics = pass.statistics();
   const LowView view = lowViewOf(gbuffer, planes.solid, camera, factor);
   part.layers = LayerChoice::lowResolution;
+  part.fog = nullptr;
   pass.over(view.gbuffer, view.camera);
   OitPlanes low;
   try {

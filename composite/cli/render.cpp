@@ -7,6 +7,7 @@
 #include "composite/antialias.h"
 #include "composite/cli/lists.h"
 #include "composite/cli/systems.h"
+#include "composite/fog.h"
 #include "composite/fold.h"
 #include "composite/fold_exact.h"
 #include "composite/fold_published.h"
@@ -46,11 +47,17 @@ class ListPainter {
       lookedUp_ = Image<glm::vec3>(gbuffer_.data.width(), gbuffer_.data.height(), glm::vec3(0.0f));
     }
     const bool split = settings_.sortedTruth || settings_.tolerance;
-    eachList(pass_, deep_, gbuffer_, sample_, split ? VolumeRule::split : VolumeRule::midDepth,
+    PassSettings listed = sample_;
+    if (sums_) listed.fog = nullptr;  // it enters sums as the GL pass has it do
+    eachList(pass_, deep_, gbuffer_, listed, split ? VolumeRule::split : VolumeRule::midDepth,
              [&](const FragmentLists& lists) {
                if (!pass_) counts_.fragments += lists.fragments.size();
                tile(lists, veil);
              });
+    if (sums_ && sample_.fog) {
+      planes_.info.weight = sample_.weight;
+      addFog(*sample_.fog, gbuffer_, sample_.sample, planes_);
+    }
     if (sums_)
       return resolveSums(settings_.device, std::move(planes_), settings_.resolve, settings_.lookup, gbuffer_);
     if (!planes_.scatters()) return veil;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
 #include "composite/cli/render.h"
 #include "composite/cli/results.h"
@@ -33,6 +34,7 @@ struct StudyFlags {
   ScatterFlags scatter;
   LookupFlags lookup;
   FoliageFlags foliage;
+  FogFlags fog;
   RunFlags run;
   std::vector<int> samples{1};
   std::vector<std::string> precisions{"float"};
@@ -160,7 +162,7 @@ void study(const StudyFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
   const std::vector<Candidate> candidates = candidatesOf(flags);
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.fog.traced());
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   std::error_code error;
   std::filesystem::create_directories(flags.folder, error);
@@ -173,6 +175,7 @@ void study(const StudyFlags& flags) {
   flags.method.applyTo(settings.pass, shot->camera);
   flags.scatter.applyTo(settings.pass);
   settings.lookup = flags.lookup.settings();
+  settings.pass.fog = flags.fog.place(*shot, flags.read.unit, "", stages);
   std::unique_ptr<GlContext> context;
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
@@ -273,6 +276,7 @@ void addStudy(CLI::App& app) {
   flags->read.addTo(*verb);
   flags->scene.addTo(*verb);
   flags->foliage.addTo(*verb);
+  flags->fog.addTo(*verb);
   flags->method.addWeightTo(*verb, true);
   verb->add_option("--threads", flags->run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
   verb->add_flag("--json", flags->run.json, "Print the table as JSON");

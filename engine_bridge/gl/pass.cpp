@@ -2,6 +2,7 @@
 #include <chrono>
 #include <limits>
 
+#include "engine_bridge/gl/fog_pass.h"
 #include "engine_bridge/gl/fragment_lists.h"
 #include "engine_bridge/gl/published_targets.h"
 #include "engine_bridge/gl/renderer.h"
@@ -16,6 +17,7 @@ struct TransparentPass::Impl {
   gl::Renderer renderer;
   PassStatistics statistics;
   std::unique_ptr<gl::PublishedTargets> published;
+  gl::FogPass fog;
 
   gl::PublishedTargets& publishedTargets(int width, int height) {
     if (!published || published->width() != width || published->height() != height)
@@ -72,7 +74,7 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, const 
 }  // namespace
 
 TransparentPass::TransparentPass(GlContext&, const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
-    : impl_(new Impl{&gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}, {}}) {}
+    : impl_(new Impl{&gbuffer, camera, gl::Renderer(scene, gbuffer, camera), {}, {}, {}}) {}
 
 TransparentPass::~TransparentPass() = default;
 
@@ -135,6 +137,7 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
     } else {
       renderer.targets().beginSums(layout);
       renderer.draw(gl::Output::sums, scissors);
+      if (settings.fog) impl_->fog.draw(*settings.fog, renderer.fogFrame(part));
       renderer.targets().readSums(planes, part.x0, part.y0);
     }
     if (renderer.hasSolids()) renderer.targets().readSolid(planes.solid, part.x0, part.y0);

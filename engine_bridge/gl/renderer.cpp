@@ -335,6 +335,14 @@ void Renderer::draw(Output output, const std::vector<Window>& scissors) {
   checkGl("drawing transparent triangles");
 }
 
+FogFrame Renderer::fogFrame(const Window& superTile) const {
+  const Window& data = gbuffer_->data;
+  FogFrame frame;
+  frame.defines = outputDefines(Output::sums, features_, settings_.weight.kind, settings_.normalisation);
+  frame.rays = pixelRays(camera_, gbuffer_->display, {data.x0 + superTile.x0, data.y0 + superTile.y0}, settings_.sample);
+  return frame;
+}
+
 std::vector<Window> Renderer::tiles() const {
   const int width = targets_->width(), height = targets_->height();
   const int edge = settings_.tile > 0 ? settings_.tile : std::max(width, height);

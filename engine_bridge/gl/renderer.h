@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/fog_pass.h"
 #include "engine_bridge/gl/geometry_stream.h"
 #include "engine_bridge/gl/permutation.h"
 #include "engine_bridge/gl/program.h"
@@ -47,6 +48,8 @@ class Renderer {
   bool wouldScatter(const PassSettings& settings) const;
   bool wouldOcclude(const PassSettings& settings) const;
   bool occludes() const { return features_.occludes; }
+  // What a full-screen pass over the sums of a super-tile needs to know, after begin().
+  FogFrame fogFrame(const Window& superTile) const;
   // Scissor tiles of the super-tile, as PassSettings::tile wants them.
   std::vector<Window> tiles() const;
   const GeometryStream& geometry() const { return stream_; }

@@ -10,10 +10,13 @@
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/medium.h"
 #include "gbuffer/occluders.h"
 #include "gbuffer/published.h"
 
 namespace pellucid {
+
+struct Fog;  // gbuffer/medium.h
 
 enum class TextureFilter { mipmap, bilinear, nearest };
 enum class MaskEdge { smooth, hard };
@@ -69,6 +72,7 @@ struct PassSettings {
   OcclusionSettings occlusion;
   LayerChoice layers = LayerChoice::all;
   int probeCell = 1;  // above 1, lists hold one pixel of every cell of this edge alone: shaders/shared/probe.glsl
+  std::shared_ptr<const Fog> fog;  // marched in front of what is opaque, into the sums; lists leave it to their reader
 };
 
 struct PassStatistics {

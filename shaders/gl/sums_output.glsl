@@ -23,8 +23,8 @@ layout(location = 5) out float nearestZ;
 layout(location = 7) out vec4 dispersionSum;
 #endif
 
-void writeSums(Layer layer, WeightSettings settings) {
-  OitSums sums = layerSums(layer, settings, NORMALISATION);
+//   z  nearest of what the sums hold
+void writeOitSums(OitSums sums, float z) {
 #ifdef GREY
   GreyTargets targets = packGrey(sums);
   lightSum = vec4(sums.light, 0.0f);
@@ -37,10 +37,14 @@ void writeSums(Layer layer, WeightSettings settings) {
   opacitySum = targets.opacity;
   depthSum = targets.depth;
 #ifdef SCATTER
-  nearestZ.x = layer.z;
+  nearestZ.x = z;
 #else
-  nearestZ = layer.z;
+  nearestZ = z;
 #endif
+}
+
+void writeSums(Layer layer, WeightSettings settings) {
+  writeOitSums(layerSums(layer, settings, NORMALISATION), layer.z);
 }
 
 #ifdef SCATTER

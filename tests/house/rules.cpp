@@ -32,6 +32,7 @@ const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine"}}
                               {"EGL/", {"engine_bridge/gl"}},
                               {"GL/", {"engine_bridge/gl", "engine_bridge/c"}},
                               {"embree3/", {"engine_bridge/embree"}},
+                              {"openvdb/", {"engine_bridge/scene"}},
                               {"OpenEXR/", {"gbuffer", "samples/generate"}}};
 
 bool isBelow(const std::string& path, const std::string& folder) {

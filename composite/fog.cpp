@@ -1,0 +1,211 @@
+#include "composite/fog.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "composite/denormals.h"
+
+namespace pellucid {
+namespace shading {
+
+// The shared text of the march, with the functions by which it reads volumes.
+struct FogText {
+  const Fog& fog;
+  ivec3 gridSize;
+  bool hasVisibility;
+  mat4 volumeFromView;
+  int lightsOfFog;
+
+  explicit FogText(const Fog& given)
+      : fog(given),
+        gridSize(given.grid ? given.grid->density.size : ivec3(1)),
+        hasVisibility(given.visibility != nullptr),
+        volumeFromView(given.visibility ? given.visibility->texelFromView : mat4(1.0f)),
+        lightsOfFog(static_cast<int>(given.lights.size())) {}
+  float densityTexel(ivec3 texel) const { return fog.grid->density.clamped(texel); }
+  vec3 visibilityTexel(int light, ivec3 texel) const {
+    const LightVolume& volume = *fog.visibility;
+    const ivec3 inside = clamp(texel, ivec3(0), volume.size - 1);
+    return vec3(volume.visibility.at(ivec3(inside.x, inside.y, inside.z + light * volume.size.z)));
+  }
+  const PunctualLight& lightNumber(int light) const { return fog.lights[static_cast<std::size_t>(light)]; }
+
+#define PLD_FN inline
+#define precise
+#include "shaders/shared/march.glsl"
+#undef precise
+#undef PLD_FN
+};
+
+}  // namespace shading
+
+namespace {
+
+constexpr std::uint32_t kFogIdentity = 0x666f6721u;
+constexpr float kMostCoverage = 0.99999994f;  // a run of fog is never solid
+
+struct Marcher {
+  const Fog& fog;
+  std::unique_ptr<shading::FogText> text;
+  PixelRays rays;
+
+  Marcher(const Fog& given, const GBuffer& gbuffer, const Window& window, glm::dvec2 sample)
+      : fog(given),
+        text(new shading::FogText(given)),
+        rays(pixelRays(given.camera, gbuffer.display, {window.x0, window.y0}, sample)) {}
+
+  shading::FogSpan span(int x, int y, float z) const {
+    const glm::vec2 at = rays.offset + rays.scale * glm::vec2(static_cast<float>(x), static_cast<float>(y));
+    return shading::spanOfPixel(fog.medium, at, rays.orthographic ? 1 : 0, z);
+  }
+};
+
+// One ray's march in pieces that end where a surface stands.
+class Runs {
+ public:
+  explicit Runs(std::vector<Fragment>& made) : made_(made) {}
+  void add(float depth, float z, glm::vec3 source) {
+    const float hides = shading::pldOneMinusExp(depth);
+    const float seen = passed_ * hides;
+    radiance_ += seen * source;
+    z_ += seen * z;
+    hidden_ += seen;
+    passed_ *= shading::pldExp(-depth);
+    depth_ += depth;
+  }
+  //   last  depth of the surface that ends the run
+  void end(float first, float last) {
+    if (depth_ > 0.0f) {
+      Fragment run{};
+      run.radiance = radiance_;
+      run.coverage = std::min(shading::pldOneMinusExp(depth_), kMostCoverage);
+      run.transmission = glm::vec3(0.0f);
+      run.identity = shading::identityOf(kFogIdentity, number_);
+      // Strictly between the two, or it would merge with one of them.
+      const float middle = hidden_ > 0.0f ? z_ / hidden_ : first;
+      run.z = std::clamp(middle, std::nextafter(first, last), std::max(std::nextafter(last, first), first));
+      if (run.z > 0.0f) made_.push_back(run);
+    }
+    radiance_ = glm::vec3(0.0f);
+    passed_ = 1.0f;
+    z_ = hidden_ = depth_ = 0.0f;
+    ++number_;
+  }
+
+ private:
+  std::vector<Fragment>& made_;
+  glm::vec3 radiance_{0.0f};
+  std::uint32_t number_ = 0;
+  float passed_ = 1.0f, z_ = 0.0f, hidden_ = 0.0f, depth_ = 0.0f;
+};
+
+// `cuts` ascending, planar metres.
+void marchRuns(const Marcher& marcher, const shading::FogSpan& span, const std::vector<float>& cuts, float behind,
+               std::vector<Fragment>& made) {
+  const shading::Medium& medium = marcher.fog.medium;
+  Runs runs(made);
+  std::size_t next = 0;
+  float first = 0.0f;
+  const int count = static_cast<int>(medium.march.y);
+  for (int i = 0; i < count; ++i) {
+    const shading::FogStep step = marcher.text->fogStep(medium, span, i);
+    const float z0 = step.begin * span.zPerMetre, z1 = step.end * span.zPerMetre;
+    const bool lit = step.depth > 0.0f;
+    const glm::vec3 source = lit ? marcher.text->scatteredAt(medium, step.middle, span.direction) : glm::vec3(0.0f);
+    float from = z0;
+    for (; next < cuts.size() && cuts[next] < z1; ++next) {
+      const float to = std::max(cuts[next], from);
+      // Even within the step.
+      if (lit && to > from) runs.add(step.depth * ((to - from) / (z1 - z0)), 0.5f * (from + to), source);
+      runs.end(first, cuts[next]);
+      first = cuts[next];
+      from = to;
+    }
+    if (lit && z1 > from) runs.add(step.depth * ((z1 - from) / (z1 - z0)), 0.5f * (from + z1), source);
+  }
+  runs.end(first, behind);
+}
+
+}  // namespace
+
+void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, OitPlanes& planes) {
+  const Marcher marcher(fog, gbuffer, planes.data, sample);
+  tbb::parallel_for(tbb::blocked_range<int>(0, planes.data.height()), [&](const tbb::blocked_range<int>& rows) {
+    const FlushDenormals flush;
+    for (int y = rows.begin(); y != rows.end(); ++y)
+      for (int x = 0; x < planes.data.width(); ++x) {
+        const float z = std::min(gbuffer.viewZ.at(x, y), planes.solid.at(x, y).a);
+        const shading::FogSums sums =
+            marcher.text->marchFog(fog.medium, marcher.span(x, y, z), planes.info.weight, fog.order);
+        if (!(sums.share > 0.0f)) continue;
+        const shading::OitSums own = shading::fogOitSums(sums, fog.order);
+        const shading::OitTargets added = shading::packSums(own);
+        planes.radiance.at(x, y) += added.radiance;
+        planes.weight.at(x, y) += added.weight;
+        planes.opacity.at(x, y) += added.opacity;
+        planes.depth.at(x, y) += added.depth;
+        planes.light.at(x, y) += added.light;
+        planes.frontZ.at(x, y) = std::min(planes.frontZ.at(x, y), shading::fogZ(sums));
+      }
+  });
+}
+
+FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists) {
+  const Marcher marcher(fog, gbuffer, lists.window, sample);
+  const int width = lists.window.width(), height = lists.window.height();
+  const int left = lists.window.x0 - gbuffer.data.x0, top = lists.window.y0 - gbuffer.data.y0;
+  std::vector<std::vector<Fragment>> rows(static_cast<std::size_t>(height));
+  std::vector<std::uint64_t> counts(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  tbb::parallel_for(0, height, [&](int y) {
+    const FlushDenormals flush;
+    std::vector<Fragment>& made = rows[static_cast<std::size_t>(y)];
+    std::vector<float> cuts;
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const float behind = std::min(gbuffer.viewZ.at(left + x, top + y), lists.solid.at(x, y).a);
+      cuts.clear();
+      for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) cuts.push_back(lists.fragments[i].z);
+      std::sort(cuts.begin(), cuts.end());
+      const std::size_t before = made.size();
+      marchRuns(marcher, marcher.span(x, y, behind), cuts, behind, made);
+      counts[pixel] = made.size() - before;
+    }
+  });
+  FragmentLists result;
+  result.window = lists.window;
+  result.solid = lists.solid;
+  result.offsets.assign(1, 0);
+  const bool disperses = lists.disperses();
+  std::size_t pixel = 0;
+  for (int y = 0; y < height; ++y) {
+    std::size_t taken = 0;
+    const std::vector<Fragment>& made = rows[static_cast<std::size_t>(y)];
+    for (int x = 0; x < width; ++x, ++pixel) {
+      const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]), end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
+      result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
+      const auto own = made.begin() + static_cast<std::ptrdiff_t>(taken);
+      result.fragments.insert(result.fragments.end(), own, own + static_cast<std::ptrdiff_t>(counts[pixel]));
+      taken += counts[pixel];
+      result.offsets.push_back(result.fragments.size());
+      if (!disperses) continue;
+      result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin, lists.dispersion.begin() + end);
+      result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
+    }
+  }
+  return result;
+}
+
+FogRay fogThrough(const Fog& fog, glm::vec3 origin, glm::vec3 direction, float zPerMetre, float z) {
+  shading::FogText text(fog);
+  const shading::FogSpan span = shading::fogSpan(fog.medium, origin, direction, zPerMetre, z);
+  shading::WeightSettings uniform{shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 1.0f};
+  const shading::FogSums sums = text.marchFog(fog.medium, span, uniform, shading::PLD_FOG_ORDERED);
+  return {sums.radiance, sums.passed, sums.depth};
+}
+
+}  // namespace pellucid

@@ -1,0 +1,116 @@
+#include "gbuffer/medium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace pellucid {
+namespace {
+
+glm::dmat4 boxFromWorld(const Box& box) {
+  const glm::dvec3 size = box.high - box.low;
+  glm::dmat4 matrix(1.0);
+  for (int c = 0; c < 3; ++c) {
+    matrix[c][c] = 1.0 / size[c];
+    matrix[3][c] = -box.low[c] / size[c];
+  }
+  return matrix;
+}
+
+bool inOrder(const Box& box) {
+  return box.high.x > box.low.x && box.high.y > box.low.y && box.high.z > box.low.z;
+}
+
+}  // namespace
+
+Fog placeFog(const MediumSettings& settings, const Camera& camera, const AmbientLight& ambient,
+             std::vector<shading::PunctualLight> lights) {
+  if (!(settings.density >= 0.0) || !(settings.height >= 0.0) || !(std::abs(settings.g) <= 0.98) ||
+      settings.steps < 1 || !(settings.farthest > 0.0) || (settings.box && !inOrder(*settings.box)))
+    throw std::logic_error("placeFog: a setting is out of its range");
+  const glm::dmat3 turn(camera.viewFromWorld);
+  const glm::dmat4 worldFromView = glm::inverse(camera.viewFromWorld);
+  Fog fog;
+  fog.camera = camera;
+  shading::Medium& medium = fog.medium;
+  medium.scattering = glm::vec4(glm::vec3(settings.albedo), static_cast<float>(settings.g));
+  const bool bounded = settings.grid || settings.box;
+  medium.extinction = {static_cast<float>(settings.density),
+                       settings.height > 0.0 && !settings.grid ? static_cast<float>(1.0 / settings.height) : 0.0f,
+                       bounded ? 1.0f : 0.0f, settings.grid ? 1.0f : 0.0f};
+  medium.march = {static_cast<float>(settings.farthest), static_cast<float>(settings.steps), 0.0f, 0.0f};
+  const glm::dvec3 eye(worldFromView[3]);
+  medium.up = glm::vec4(glm::vec3(turn * glm::dvec3(0.0, 1.0, 0.0)), static_cast<float>(eye.y - settings.base));
+  medium.ambient = glm::vec4(ambient.mean, 0.0f);
+  glm::vec4* slopes[] = {&medium.ambientRed, &medium.ambientGreen, &medium.ambientBlue};
+  for (int c = 0; c < 3; ++c) *slopes[c] = glm::vec4(glm::vec3(turn * ambient.slope[c]), 0.0f);
+  const glm::dmat4 box = settings.grid  ? settings.grid->boxFromWorld
+                         : settings.box ? boxFromWorld(*settings.box)
+                                        : glm::dmat4(1.0);
+  medium.boxFromView = glm::mat4(box * worldFromView);
+  fog.order = settings.order;
+  fog.lights = std::move(lights);
+  fog.grid = settings.grid;
+  return fog;
+}
+
+namespace {
+
+struct Bounds {
+  Box box{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
+  void add(const glm::dvec3& point) {
+    box.low = glm::min(box.low, point);
+    box.high = glm::max(box.high, point);
+  }
+};
+
+Box boxOfGrid(const DensityGrid& grid) {
+  const glm::dmat4 worldFromBox = glm::inverse(grid.boxFromWorld);
+  Bounds bounds;
+  for (int corner = 0; corner < 8; ++corner)
+    bounds.add(glm::dvec3(worldFromBox * glm::dvec4(corner & 1, (corner >> 1) & 1, corner >> 2, 1.0)));
+  return bounds.box;
+}
+
+}  // namespace
+
+Box fogBounds(const MediumSettings& settings, const Camera& camera, const GBuffer& gbuffer) {
+  if (settings.grid) return boxOfGrid(*settings.grid);
+  float farthest = 0.0f;
+  for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i)
+    if (std::isfinite(gbuffer.viewZ[i])) farthest = std::max(farthest, gbuffer.viewZ[i]);
+  const auto limit = static_cast<float>(settings.farthest);
+  farthest = farthest > 0.0f ? std::min(farthest, limit) : limit;
+  const PixelRays rays = pixelRays(camera, gbuffer.display, {gbuffer.data.x0, gbuffer.data.y0}, {0.5, 0.5});
+  const glm::dmat4 worldFromView = glm::inverse(camera.viewFromWorld);
+  Bounds bounds;
+  for (int y = 0; y < gbuffer.viewZ.height(); ++y)
+    for (int x = 0; x < gbuffer.viewZ.width(); ++x) {
+      const double z = static_cast<double>(std::min(gbuffer.viewZ.at(x, y), farthest));
+      const glm::dvec2 at(rays.offset + rays.scale * glm::vec2(static_cast<float>(x), static_cast<float>(y)));
+      const glm::dvec2 start = camera.orthographic ? at : glm::dvec2(0.0), end = camera.orthographic ? at : at * z;
+      bounds.add(glm::dvec3(worldFromView * glm::dvec4(start, 0.0, 1.0)));
+      bounds.add(glm::dvec3(worldFromView * glm::dvec4(end, -z, 1.0)));
+    }
+  if (settings.box) {
+    const Box both{glm::max(bounds.box.low, settings.box->low), glm::min(bounds.box.high, settings.box->high)};
+    return inOrder(both) ? both : *settings.box;
+  }
+  return bounds.box;
+}
+
+PixelRays pixelRays(const Camera& camera, const Window& display, glm::ivec2 first, glm::dvec2 sample) {
+  // NDC is focal * (x, y) / z + centre.
+  const glm::dvec2 size(display.width(), display.height());
+  const glm::dvec2 from = glm::dvec2(first - glm::ivec2(display.x0, display.y0)) + sample;
+  const glm::dvec2 flip(1.0, -1.0);
+  const glm::dvec2 ndcOffset = flip * (2.0 * from / size - 1.0), ndcScale = flip * 2.0 / size;
+  PixelRays rays;
+  rays.offset = glm::vec2((ndcOffset - camera.centre) / camera.focal);
+  rays.scale = glm::vec2(ndcScale / camera.focal);
+  rays.orthographic = camera.orthographic;
+  return rays;
+}
+
+}  // namespace pellucid

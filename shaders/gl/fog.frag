@@ -1,0 +1,59 @@
+// Fog before what is opaque: one surface over the whole picture, marched in registers and written once.
+#include "gl/frame.glsl"
+#include "gl/lights.glsl"
+#include "gl/sums_output.glsl"
+#include "shared/medium.glsl"
+
+// Mirrors FogBlock in engine_bridge/gl/fog_pass.cpp.
+layout(std140, binding = 2) uniform FogValues {
+  Medium medium;
+  mat4 volumeFromView;
+  vec4 pixelRay;      // offset, scale: see PixelRays
+  ivec4 gridTexels;   // w: lights
+  ivec4 volumeTexels;  // of one light; w: 1 where there is one
+  ivec4 choices;      // PLD_FOG_*; 1 orthographic
+};
+
+layout(binding = 12) uniform sampler3D densityGrid;
+layout(binding = 13) uniform sampler3D lightVolume;  // lights above one another
+
+#define gridSize gridTexels.xyz
+#define hasVisibility (volumeTexels.w != 0)
+#define lightsOfFog gridTexels.w
+
+float densityTexel(ivec3 texel) {
+  return texelFetch(densityGrid, clamp(texel, ivec3(0), gridTexels.xyz - 1), 0).r;
+}
+
+vec3 visibilityTexel(int light, ivec3 texel) {
+  ivec3 inside = clamp(texel, ivec3(0), volumeTexels.xyz - 1);
+  return texelFetch(lightVolume, inside + ivec3(0, 0, light * volumeTexels.z), 0).rgb;
+}
+
+PunctualLight lightNumber(int light) { return lights[light]; }
+
+#include "shared/march.glsl"
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float z = texelFetch(opaqueZ, pixel, 0).r;
+#ifdef SOLIDS
+  z = min(z, texelFetch(solid, pixel, 0).a);
+#endif
+  WeightSettings settings;
+  settings.kind = WEIGHT;
+  settings.rangeNear = weightNear;
+  settings.rangeFar = weightFar;
+  settings.exponent = weightExponent;
+  precise vec2 at = pixelRay.xy + pixelRay.zw * vec2(pixel);
+  FogSums fog = marchFog(medium, spanOfPixel(medium, at, choices.y, z), settings, choices.x);
+  if (!(fog.share > 0.0f)) discard;
+  writeOitSums(fogOitSums(fog, choices.x), fogZ(fog));
+#ifdef SCATTER
+  nearestZ.y = intBitsToFloat(0x7f800000);
+  refractionSum = vec4(0.0f);
+#endif
+#ifdef DISPERSION
+  dispersionSum = vec4(0.0f);
+#endif
+}
