@@ -14,6 +14,7 @@
 namespace pellucid {
 namespace {
 
+constexpr std::uintmax_t kSmallFile = std::uintmax_t{64} << 20;
 constexpr std::int64_t kMostTexels = std::int64_t{1} << 27;  // 512 MiB of floats
 
 std::string namesOf(const openvdb::GridPtrVec& grids) {
@@ -129,6 +130,9 @@ std::shared_ptr<const DensityGrid> readDensityGrid(const std::string& path, cons
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
+    // A broken size in a small file asks for all the memory there is.
+    if (std::filesystem::file_size(path, problem) < kSmallFile)
+      throw InputError(fmt::format("{}: damaged: it claims to hold more than memory could", path));
     throw ResourceError(fmt::format("{}: does not fit in memory", path));
   } catch (const std::exception& error) {
     throw InputError(fmt::format("{}: damaged, or no OpenVDB file: {}", path, error.what()));
