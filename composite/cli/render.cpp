@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "composite/antialias.h"
 #include "composite/cli/lists.h"
@@ -190,6 +191,7 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
   for (int i = 0; i < settings.samples; ++i) {
     PassSettings sample = settings.pass;
     sample.sample = samplePosition(i, settings.samples);
+    sample.footprint = 1.0f / std::sqrt(static_cast<float>(settings.samples));
     if (settings.systems && !settings.sortedTruth) {
       const Veil veil = stages.time("passes of systems", [&] {
         return veilFromSystems(*pass, *settings.systems, settings, sample, gbuffer, counts);

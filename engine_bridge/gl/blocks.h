@@ -18,7 +18,9 @@ struct FrameBlock {
   glm::vec4 refraction{0.0f};     // PLD_REFRACT_*; metres (fixed); focal length in x and y, pixels
   glm::vec4 diffusion{0.0f};      // k0, k1 metres; 1 for net coverage; how much occlusion darkens direct light
   glm::mat4 worldFromView{1.0f};  // turns only
-  std::int32_t atlasEdge = 0, unused = 0, originX = 0, originY = 0;
+  std::int32_t atlasEdge = 0;
+  float footprint = 1.0f;  // edge of what one sample stands for, pixels
+  std::int32_t originX = 0, originY = 0;
 };
 static_assert(sizeof(FrameBlock) == 240);
 static_assert(offsetof(FrameBlock, weightNear) == 80 && offsetof(FrameBlock, bandX) == 96);

@@ -214,6 +214,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
                       settings.occlusion.directShare};
   frame_.viewport = glm::vec2(superTile.width(), superTile.height());
   frame_.worldFromView = glm::mat4(glm::mat3(glm::transpose(glm::dmat3(camera_.viewFromWorld))));
+  frame_.footprint = settings.footprint;
   frame_.probeCell = settings.probeCell;
   frame_.originX = superTile.x0;
   frame_.originY = superTile.y0;
@@ -305,7 +306,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     program = &wanted;
     if (boundMaterial != primitive.material) {
       boundMaterial = primitive.material;
-      textures_.bind(material, settings_.filter);
+      textures_.bind(material, settings_.filter, settings_.footprint);
       glBindBufferRange(GL_UNIFORM_BUFFER, 1, materialBuffer_.name(),
                         static_cast<GLintptr>(static_cast<std::size_t>(boundMaterial) * materialStride_),
                         sizeof(MaterialBlock));

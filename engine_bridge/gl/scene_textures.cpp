@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <stdexcept>
 
 #include "engine_bridge/scene/foliage.h"
@@ -91,18 +92,20 @@ TexelRange SceneTextures::range(int index) const {
   return index < 0 ? TexelRange{} : ranges_.at(index);
 }
 
-const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, TextureFilter filter) {
+const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, TextureFilter filter,
+                                          float footprint) {
   const bool nearest = texture.nearest || filter == TextureFilter::nearest;
   const bool mipmap = filter == TextureFilter::mipmap;
   const int key =
       ((static_cast<int>(texture.wrapS) * 3 + static_cast<int>(texture.wrapT)) * 2 + (nearest ? 1 : 0)) * 2 +
       (mipmap ? 1 : 0);
-  Sampler& sampler = samplers_[key];
+  Sampler& sampler = samplers_[{key, mipmap ? footprint : 1.0f}];
   if (!sampler) {
     sampler = Sampler::make();
     const GLint flat = nearest ? GL_NEAREST : GL_LINEAR;
     glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, flat);
     glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, mipmap ? GL_LINEAR_MIPMAP_LINEAR : flat);
+    if (mipmap) glSamplerParameterf(sampler.name(), GL_TEXTURE_LOD_BIAS, std::log2(footprint));
     glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, wrapOf(texture.wrapS));
     glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, wrapOf(texture.wrapT));
   }
@@ -122,7 +125,7 @@ void SceneTextures::makeMipmaps(const Key& key, Uploaded& uploaded) {
   checkGl("uploading the mip levels of a mask");
 }
 
-void SceneTextures::bind(const Material& material, TextureFilter filter) {
+void SceneTextures::bind(const Material& material, TextureFilter filter, float footprint) {
   const auto references = material.textures();
   for (std::size_t i = 0; i < references.size(); ++i) {
     const int index = references[i]->texture;
@@ -131,7 +134,7 @@ void SceneTextures::bind(const Material& material, TextureFilter filter) {
     Uploaded& uploaded = uploaded_.at(key);
     if (filter == TextureFilter::mipmap && !uploaded.mipmaps) makeMipmaps(key, uploaded);
     glBindTextureUnit(kUnits[i], uploaded.texture.name());
-    glBindSampler(kUnits[i], samplerFor(scene_.textures[static_cast<std::size_t>(index)], filter).name());
+    glBindSampler(kUnits[i], samplerFor(scene_.textures[static_cast<std::size_t>(index)], filter, footprint).name());
   }
 }
 

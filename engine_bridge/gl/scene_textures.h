@@ -21,12 +21,13 @@ class SceneTextures {
   explicit SceneTextures(const Scene& scene, bool opaque = false);
 
   // Binds a material's textures to their units, as shaders/gl/material.glsl numbers them.
-  void bind(const Material& material, TextureFilter filter);
+  //   footprint  of a sample, pixels: mip levels are chosen for it
+  void bind(const Material& material, TextureFilter filter, float footprint = 1.0f);
   // Of texture `index`; all 1 for -1, as a missing texture counts in a product.
   TexelRange range(int index) const;
 
  private:
-  const Sampler& samplerFor(const pellucid::Texture& texture, TextureFilter filter);
+  const Sampler& samplerFor(const pellucid::Texture& texture, TextureFilter filter, float footprint);
 
   struct Uploaded {
     Texture texture;
@@ -41,7 +42,7 @@ class SceneTextures {
   std::map<Key, Uploaded> uploaded_;
   std::map<int, bool> masks_;  // by texture: whether its finest level is binary
   std::map<int, TexelRange> ranges_;
-  std::map<int, Sampler> samplers_;
+  std::map<std::pair<int, float>, Sampler> samplers_;  // by kind and footprint
 };
 
 }  // namespace pellucid::gl

@@ -60,6 +60,9 @@ struct PassSettings {
   shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
   glm::dvec2 sample{0.5, 0.5};  // where in the pixel, y down; (0.5, 0.5) is the centre
+  // Edge of the square that this sample stands for, pixels: 1 for the pixel's only one, 1 / sqrt(N) for one of N whose
+  // mean is taken. Rims of masks and texture footprints are that wide, so that the mean filters by the pixel, once.
+  float footprint = 1.0f;
   TextureFilter filter = TextureFilter::mipmap;
   MaskEdge mask = MaskEdge::smooth;
   SubmissionOrder order;

@@ -15,6 +15,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 diffusion;        // k0, k1 metres; 1 for net coverage; how much occlusion darkens direct light
   mat4 worldFromView;    // turns only
   int atlasEdge;         // of the surroundings' level 0, texels
+  float footprint;       // edge of what one sample stands for, pixels
   ivec2 origin;          // of the pass's pixel 0, 0 in the data window
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 // A glTF material under this fragment: the only place that fetches its textures. Mirrors MaterialBlock in
 // engine_bridge/scene/blocks.h.
+#include "gl/frame.glsl"
 #include "shared/material.glsl"
 
 layout(std140, binding = 1) uniform MaterialValues {
@@ -50,7 +51,7 @@ float thicknessTexel() {
 // Takes derivatives: to be called before any discard.
 float coverageOf(float alpha) {
 #if defined(MASK_SMOOTH)
-  float covered = maskCoverage(alpha, material.interface_.w, fwidth(alpha));
+  float covered = maskCoverage(alpha, material.interface_.w, footprint * fwidth(alpha));
 #elif defined(MASK_HARD)
   float covered = alpha >= material.interface_.w ? 1.0f : 0.0f;
 #elif defined(BLEND)

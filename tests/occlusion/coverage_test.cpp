@@ -1,6 +1,7 @@
 // Solid insides and rims together against 64 rays per pixel: as much is covered, and no seam lies between the two. A
 // single pixel of one sample is off by several times the mean: its edge is where the mip level puts it, by up to a texel
-// of that level. The exact area of a half plane in place of the linear ramp does not help (.070 instead of .067).
+// of that level. The exact area of a half plane in place of the linear ramp does not help (.070 instead of .067). More
+// samples read finer levels; at 64 of them what is left is the noise of the rays (.015).
 #include <gtest/gtest.h>
 
 #include "composite/antialias.h"
@@ -21,11 +22,12 @@ void holdCoverage(PlantScene scene, const std::vector<samples::Card>& cards, con
   stage.addCards(cards, stage.addMask(mask));
   GlContext context;
   TransparentPass pass(context, stage.scene, stage.gbuffer, stage.camera);
-  for (const int samples : {1, 8}) {
+  for (const int samples : {1, 8, 64}) {
     VeilMean mean;
     for (int i = 0; i < samples; ++i) {
       PassSettings settings;
       settings.sample = samplePosition(i, samples);
+      settings.footprint = 1.0f / std::sqrt(static_cast<float>(samples));
       mean.add(resolve(pass.accumulate(settings), {}));
     }
     const Veil veil = mean.finish();
@@ -46,7 +48,7 @@ void holdCoverage(PlantScene scene, const std::vector<samples::Card>& cards, con
     ASSERT_GT(rims, 200u);
     EXPECT_EQ(seams, 0u);
     EXPECT_LE(std::abs(bias / count), 0.02);
-    EXPECT_LE(sum / count, samples == 1 ? 0.1 : 0.07);
+    EXPECT_LE(sum / count, samples == 1 ? 0.1 : samples == 8 ? 0.04 : 0.02);
   }
 }
 
