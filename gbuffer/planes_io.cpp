@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <sstream>
+#include <stdexcept>
 
 #include "gbuffer/errors.h"
 #include "gbuffer/exr_document.h"
@@ -78,6 +79,24 @@ PlaneSet scatterOf(bool published) {
 constexpr VectorPlane kDispersionPlanes[] = {
     {"oit.dispersion.RX", &OitPlanes::dispersion, 0, true}, {"oit.dispersion.RY", &OitPlanes::dispersion, 1, true},
     {"oit.dispersion.BX", &OitPlanes::dispersion, 2, true}, {"oit.dispersion.BY", &OitPlanes::dispersion, 3, true},
+};
+
+// Only in files whose rims wait for their occlusion; all of them or none.
+template <class T>
+struct RimPlane {
+  const char* name;
+  Image<T> RimPlanes::*image;
+  int component;
+};
+constexpr RimPlane<glm::vec4> kRimPlanes[] = {
+    {"oit.rim.R", &RimPlanes::averaged, 0},   {"oit.rim.G", &RimPlanes::averaged, 1},
+    {"oit.rim.B", &RimPlanes::averaged, 2},   {"oit.rim.W", &RimPlanes::averaged, 3},
+    {"oit.rim.E.R", &RimPlanes::added, 0},    {"oit.rim.E.G", &RimPlanes::added, 1},
+    {"oit.rim.E.B", &RimPlanes::added, 2},    {"oit.rim.Z", &RimPlanes::added, 3},
+};
+constexpr RimPlane<glm::vec2> kRimGradients[] = {
+    {"oit.rim.X", &RimPlanes::gradient, 0},
+    {"oit.rim.Y", &RimPlanes::gradient, 1},
 };
 
 // Numbers as text that reads back to the same bits.
@@ -189,7 +208,7 @@ void readPlane(const ExrPart& part, const char* name, bool finite, const std::st
 
 }  // namespace
 
-void writePlanes(const std::string& path, const OitPlanes& planes) {
+void writePlanes(const std::string& path, const OitPlanes& planes, const RimPlanes& rims) {
   NewExr file;
   file.display = planes.display;
   file.data = planes.data;
@@ -215,6 +234,13 @@ void writePlanes(const std::string& path, const OitPlanes& planes) {
     for (const VectorPlane& plane : kDispersionPlanes)
       addChannel(plane.name, [&](std::size_t i) { return planes.dispersion[i][plane.component]; });
 
+  if (!rims.empty()) {
+    for (const auto& plane : kRimPlanes)
+      addChannel(plane.name, [&](std::size_t i) { return (rims.*plane.image)[i][plane.component]; });
+    for (const auto& plane : kRimGradients)
+      addChannel(plane.name, [&](std::size_t i) { return (rims.*plane.image)[i][plane.component]; });
+  }
+
   file.attributes = {
       {"pellucid:method", planes.info.method},
       {"pellucid:weight", weightText(planes.info.weight)},
@@ -232,7 +258,7 @@ void writePlanes(const std::string& path, const OitPlanes& planes) {
   writeNewExr(path, file);
 }
 
-OitPlanes readPlanes(const std::string& path) {
+OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
   const ExrDocument document = readExr(path);
   const ExrPart& part = document.parts[0];
   if (part.deep) throw MeaningError(path + ": not OIT planes: found deep samples, expected what accumulate writes");
@@ -267,6 +293,21 @@ OitPlanes readPlanes(const std::string& path) {
     if (published) throw InputError(path + ": found oit.dispersion.* in tier published, expected none");
     addDispersionPlane(planes);
     readSet({{std::begin(kDispersionPlanes), std::end(kDispersionPlanes)}});
+  }
+  const bool apart = std::any_of(std::begin(kRimPlanes), std::end(kRimPlanes), [&](const RimPlane<glm::vec4>& plane) {
+    return part.find(plane.name) != nullptr;
+  });
+  if (apart) {
+    if (published) throw InputError(path + ": found oit.rim.* in tier published, expected none");
+    RimPlanes found(part.data.width(), part.data.height());
+    const auto readRim = [&](const auto& plane) {
+      auto& image = found.*plane.image;
+      readPlane(part, plane.name, true, path, [&](std::size_t i, float value) { image[i][plane.component] = value; });
+    };
+    for (const auto& plane : kRimPlanes) readRim(plane);
+    for (const auto& plane : kRimGradients) readRim(plane);
+    if (!rims) throw std::logic_error(path + ": its rims wait for their occlusion, which nobody takes");
+    *rims = std::move(found);
   }
   if (published)
     for (int y = 0; y < planes.data.height(); ++y)

@@ -3,13 +3,16 @@
 #include <string>
 
 #include "gbuffer/accum.h"
+#include "gbuffer/rim_planes.h"
 
 namespace pellucid {
 
 // Every bit of the planes, of `info` and of the camera comes back from readPlanes. Throws ResourceError.
-void writePlanes(const std::string& path, const OitPlanes& planes);
+//   rims  channels oit.rim.*, unless empty
+void writePlanes(const std::string& path, const OitPlanes& planes, const RimPlanes& rims = {});
 // Throws InputError for a damaged file or a sum that is not finite, MeaningError for one without the planes or the
 // header.
-OitPlanes readPlanes(const std::string& path);
+//   rims  is given those of the file; a file that has some must not be read without
+OitPlanes readPlanes(const std::string& path, RimPlanes* rims = nullptr);
 
 }  // namespace pellucid

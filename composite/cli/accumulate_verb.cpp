@@ -64,6 +64,9 @@ void accumulate(const AccumulateFlags& flags) {
   flags.scatter.applyTo(settings);
   settings.fog =
       flags.fog.place(*shot, flags.read.unit, flags.method.isPublished() ? "--precision published" : "", stages);
+  if (flags.foliage.isApart() && flags.method.precision != "float")
+    throw UsageError(fmt::format("--occlusion: found apart with --precision {}, expected float: rims are summed in floats",
+                                 flags.method.precision));
   GlContext context(flags.scene.device);
   TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
   flags.foliage.applyTo(settings, &pass, shot->opaque.gbuffer, shot->camera, stages);
@@ -76,7 +79,14 @@ void accumulate(const AccumulateFlags& flags) {
     statistics = pass.statistics();
     return exact;
   });
-  stages.time("write", [&] { writePlanes(flags.output, planes); });
+  RimPlanes rims;
+  if (flags.foliage.isApart()) {
+    if (factor > 1) settings.layers = LayerChoice::fullResolution;
+    rims = stages.time("rims", [&] { return pass.rims(settings); });
+    if (rims.empty()) spdlog::info("no cut-out leaf waits for its occlusion: the planes carry no rims");
+    if (!rims.empty()) ++statistics.passes;
+  }
+  stages.time("write", [&] { writePlanes(flags.output, planes, rims); });
   nlohmann::json report{{"output", flags.output}};
   RenderCounts counts;
   addStatistics(statistics, counts);
@@ -95,7 +105,7 @@ void addAccumulate(CLI::App& app) {
   flags->scene.addTo(*verb);
   flags->method.addTo(*verb, false);
   flags->scatter.addTo(*verb);
-  flags->foliage.addTo(*verb);
+  flags->foliage.addTo(*verb, true);
   flags->fog.addTo(*verb);
   flags->lowRes.addTo(*verb);
   flags->run.addTo(*verb);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/device_resolve.h"
+#include "composite/cli/foliage_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
@@ -21,6 +22,7 @@ struct ResolveFlags {
   RunFlags run;
   LookupFlags lookup;
   SelfModulationFlag selfModulation;
+  RimFlags rims;
 };
 
 std::string windowText(const Window& window) {
@@ -32,12 +34,18 @@ void resolveVerb(const ResolveFlags& flags) {
   Stages stages;
   const OpaqueFile opaque = stages.time("read picture", [&] { return readOpaque(flags.opaque, flags.read.options()); });
   say(opaque.notes);
-  OitPlanes planes = stages.time("read planes", [&] { return readPlanes(flags.planes[0]); });
+  RimPlanes rims;
+  OitPlanes planes = stages.time("read planes", [&] { return readPlanes(flags.planes[0], &rims); });
   for (std::size_t i = 1; i < flags.planes.size(); ++i)
-    stages.time("read planes", [&] { mergePlanes(planes, readPlanes(flags.planes[i])); });
+    stages.time("read planes", [&] {
+      RimPlanes more;
+      mergePlanes(planes, readPlanes(flags.planes[i], &more));
+      rims.add(more);
+    });
   if (planes.data != opaque.gbuffer.data)
     throw MeaningError(fmt::format("{}: found data window {}, expected {} of {}", flags.planes[0],
                                    windowText(planes.data), windowText(opaque.gbuffer.data), flags.opaque));
+  stages.time("occlusion of leaves", [&] { flags.rims.applyTo(rims, opaque.gbuffer, planes); });
   ResolveSettings settings;
   settings.selfModulation = flags.selfModulation.isOn(planes.published());
   if (planes.published()) refusePublishedLayers(flags.layers);
@@ -75,6 +83,7 @@ void addResolve(CLI::App& app) {
   flags->lookup.addTo(*verb);
   flags->selfModulation.addTo(*verb);
   flags->lookup.addResolverTo(*verb);
+  flags->rims.addTo(*verb);
   addLayersOption(*verb, flags->layers);
   verb->callback([flags] { resolveVerb(*flags); });
 }

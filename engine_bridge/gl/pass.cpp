@@ -6,6 +6,7 @@
 #include "engine_bridge/gl/fragment_lists.h"
 #include "engine_bridge/gl/published_targets.h"
 #include "engine_bridge/gl/renderer.h"
+#include "engine_bridge/gl/rim_targets.h"
 #include "engine_bridge/gl/solid_hash.h"
 #include "engine_bridge/gl/transparent_pass.h"
 
@@ -147,6 +148,22 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
   if (!published)
     for (std::size_t i = 0; i < planes.weight.size(); ++i) fragments += static_cast<std::size_t>(planes.weight[i].a);
   impl_->finish(start, tiles, fragments);
+  return planes;
+}
+
+RimPlanes TransparentPass::rims(const PassSettings& settings) {
+  gl::Renderer& renderer = impl_->renderer;
+  const Window& data = impl_->gbuffer->data;
+  RimPlanes planes;
+  for (const Window& part : renderer.superTiles()) {
+    renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes);
+    if (!renderer.occludes()) return planes;
+    if (planes.empty()) planes = RimPlanes(data.width(), data.height());
+    gl::RimTargets targets(part.width(), part.height());
+    targets.begin();
+    renderer.draw(gl::Output::rims, renderer.tiles());
+    targets.read(planes, part.x0, part.y0);
+  }
   return planes;
 }
 

@@ -50,6 +50,9 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
     case Output::published:
       defines = {"OUTPUT_PUBLISHED", "WEIGHT " + std::to_string(weight)};
       break;
+    case Output::rims:
+      defines = {"OUTPUT_RIMS", "WEIGHT " + std::to_string(weight), "NORMALISATION " + std::to_string(normalisation)};
+      break;
     case Output::count:
       defines = {"OUTPUT_COUNT"};
       break;
@@ -62,8 +65,8 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   defines.emplace_back("EXACT_COVERAGE");
   if (frame.solids) defines.emplace_back("SOLIDS");
   if (frame.probes && (output == Output::count || output == Output::list)) defines.emplace_back("PROBES");
-  if (frame.scatters() && output != Output::count) defines.emplace_back("SCATTER");
-  if (frame.disperses && output != Output::count) defines.emplace_back("DISPERSION");
+  if (frame.scatters() && output != Output::count && output != Output::rims) defines.emplace_back("SCATTER");
+  if (frame.disperses && output != Output::count && output != Output::rims) defines.emplace_back("DISPERSION");
   return defines;
 }
 

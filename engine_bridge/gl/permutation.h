@@ -13,8 +13,9 @@ enum class Output {
   list,       // the fragments themselves
   solid,      // the nearest fragment that hides everything
   published,  // the targets of PT17 table 2
+  rims,       // what rims of leaves get from around: gbuffer/rim_planes.h
 };
-constexpr std::size_t kOutputs = 5;
+constexpr std::size_t kOutputs = 6;
 
 struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;

@@ -297,6 +297,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     const Instance& instance = scene_.instances[one.instance];
     const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(instance.primitive)];
     if (output == Output::solid && !shaders_[static_cast<std::size_t>(instance.primitive)].canBeSolid) continue;
+    if (output == Output::rims && !shaders_[static_cast<std::size_t>(instance.primitive)].infers) continue;
     const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
     if (!takes(settings_.layers, material)) continue;
     const Placed& placed = placed_[one.instance];

@@ -13,6 +13,7 @@
 #include "gbuffer/medium.h"
 #include "gbuffer/occluders.h"
 #include "gbuffer/published.h"
+#include "gbuffer/rim_planes.h"
 
 namespace pellucid {
 
@@ -123,6 +124,9 @@ class TransparentPass {
   // Depth of the nearest fragment that hides everything, at pixel centres, of the data window: planar metres, +inf for
   // none. What the occluders of such a pass are made from.
   Image<float> solidDepth(const PassSettings& settings);
+  // What accumulate() has left open of the rims when the settings' occlusion has no rims: their light from around, at
+  // the same sample. Empty when the settings have no occluders, or no leaf wants some.
+  RimPlanes rims(const PassSettings& settings);
   // From now on draws over another picture, whose camera stands where the first one stood; both must outlive the pass.
   // What a low-resolution pass draws over.
   void over(const GBuffer& gbuffer, const Camera& camera);

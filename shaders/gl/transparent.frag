@@ -1,5 +1,5 @@
 // One transparent fragment: fetch, shade through the shared model, write. Defines choose the output (OUTPUT_SUMS,
-// OUTPUT_PUBLISHED, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID), what the material has and what the frame needs.
+// OUTPUT_PUBLISHED, OUTPUT_RIMS, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID), what the material has and what the frame needs.
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
@@ -16,6 +16,8 @@
 #include "gl/sums_output.glsl"
 #elif defined(OUTPUT_PUBLISHED)
 #include "gl/published_output.glsl"
+#elif defined(OUTPUT_RIMS)
+#include "gl/rims_output.glsl"
 #elif defined(OUTPUT_COUNT)
 layout(location = 0) out float fragmentCount;
 #elif defined(OUTPUT_LIST)
@@ -79,7 +81,7 @@ void main() {
 #ifdef SOLIDS
   if (hidesAll || z > texelFetch(solid, pixel, 0).a) discard;
 #endif
-#if defined(OUTPUT_SUMS) || defined(OUTPUT_PUBLISHED)
+#if defined(OUTPUT_SUMS) || defined(OUTPUT_PUBLISHED) || defined(OUTPUT_RIMS)
   WeightSettings settings;
   settings.kind = WEIGHT;
   settings.rangeNear = weightNear;
@@ -105,6 +107,13 @@ void main() {
 #endif
 #elif defined(OUTPUT_PUBLISHED)
   writePublished(layer, scatter, settings);
+#elif defined(OUTPUT_RIMS)
+#if defined(OCCLUDED) && !defined(UNLIT)
+  if (!isRim(surface.coverage)) discard;
+  writeRim(layer, surface.coverage * (diffusion.w * direct + indirect), gradient, settings);
+#else
+  discard;
+#endif
 #elif defined(OUTPUT_COUNT)
   fragmentCount = 1.0f;
 #else
