@@ -77,7 +77,7 @@ std::string seamText(const Permutation& permutation, pld_stage stage, int versio
   text.erase(0, text.find('\n') + 1);             // #version
   text.erase(0, std::string("#define PLD_FN\n").size());
   std::set<std::string> own = declaredIn(text);
-  for (const char* name : {"PUBLISHED", "GREY", "HALF", "FRONT_TAIL", "SCATTER", "REFRACTS", "DIFFUSES",
+  for (const char* name : {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "REFRACTS", "DIFFUSES",
                                   "DISPERSION", "SOLIDS", "STAGE_SOLIDS", "STAGE_FRONT", "DEPTH_IN_SHADER", "UNCOUNTED",
                                   "WEIGHT", "NORMALISATION"})
     own.insert(name);

@@ -177,7 +177,7 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
 }
 
 pld_status pld_pass::seam(pld_stage stage, int version, const char*& text) {
-  if (!(stagesNeeded() & (1u << stage)))
+  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LAYERS || !(stagesNeeded() & (1u << stage)))
     return fail(PLD_ERROR_ARGUMENT, "pld_glsl: this pass has no stage %d", static_cast<int>(stage));
   static constexpr int versions[] = {330, 400, 410, 420, 430, 440, 450, 460};
   bool known = false;

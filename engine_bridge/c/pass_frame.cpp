@@ -312,7 +312,6 @@ pld_status pld_pass::resolve(const pld_target& target) {
   const Program& program = target.view == PLD_VIEW_PICTURE ? picture_ : view_;
   useProgram(program);
   gl.Uniform2i(program.place(gl, "pictureSize"), frame_.width, frame_.height);
-  gl.Uniform1i(program.place(gl, "modulateSelf"), 0);
   gl.Uniform1i(program.place(gl, "view"), static_cast<GLint>(target.view));
   gl.Uniform3i(program.place(gl, "lookup"), 0, 0, levelCount_);
   gl.Uniform1f(program.place(gl, "largestSpread"),

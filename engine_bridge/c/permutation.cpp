@@ -34,7 +34,12 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
     planes.push_back({attachment, four, bits, unit, BlendKind::add, {0, 0, 0, 0}});
   };
   sum(0, 1);
-  if (p.grey()) {
+  if (p.lean() && p.grey()) {
+    planes.push_back({1, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
+  } else if (p.lean()) {
+    sum(1, 2);
+    sum(2, 4);
+  } else if (p.grey()) {
     sum(1, 3);
     planes.push_back({2, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
   } else {
@@ -68,6 +73,7 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("PUBLISHED", p.published());
   define("UNCOUNTED", p.published());
   define("GREY", p.grey());
+  define("LEAN", p.lean());
   define("HALF", p.tier == PLD_TIER_HALF && layers);
   define("FRONT_TAIL", p.fronts() && layers);
   define("SCATTER", p.scatters() && layers);
@@ -78,7 +84,7 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
 }
 
 std::vector<std::string> resolveDefines(const Permutation& p) {
-  std::vector<std::string> defines{"PART_OF_TEXTURE"};
+  std::vector<std::string> defines{"PART_OF_TEXTURE", "NO_SELF_MODULATION"};
   const auto define = [&](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
   };
@@ -87,6 +93,7 @@ std::vector<std::string> resolveDefines(const Permutation& p) {
   define("NO_LIGHT", !p.light());
   define("PUBLISHED", p.published());
   define("GREY", p.grey());
+  define("LEAN", p.lean());
   define("HALF_SUMS", p.tier != PLD_TIER_FLOAT);
   define("FRONT_TAIL", p.fronts());
   define("SCATTER", p.scatters());

@@ -20,6 +20,8 @@ struct Permutation {
   bool published() const { return tier == PLD_TIER_PUBLISHED; }
   bool grey() const { return !published() && !has(PLD_FEATURE_COLOURED); }
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters()); }
+  // No layer adds light: half of the sums are not needed.
+  bool lean() const { return !published() && !light(); }
   // Whether planar depth is needed beside the host's.
   bool planarDepth() const { return scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
 };

@@ -1,6 +1,5 @@
 #pragma once
-// The planes of the nearest layer, beside the sums of the others.
-#include "gl/sums_output.glsl"
+// The planes of the nearest layer, beside the sums of the others, whose outputs come before.
 #include "shared/front_tail.glsl"
 
 layout(location = 6) out vec4 frontRadiance;

@@ -1,7 +1,8 @@
 #pragma once
 // Sums to what transparency does to a pixel: fetch and resolve through the shared model. Defines say how the sums lie:
-// GREY, PUBLISHED, FRONT_TAIL, else one plane per sum; and which planes there are: NO_LIGHT, SCATTER, DISPERSION.
+// GREY, LEAN, PUBLISHED, FRONT_TAIL, else one plane per sum; and which planes there are: NO_LIGHT, SCATTER, DISPERSION.
 #include "gl/lookup.glsl"
+#include "shared/lean.glsl"
 #include "shared/picture.glsl"
 
 #ifndef PUBLISHED
@@ -17,7 +18,11 @@ layout(binding = 10) uniform sampler2D dispersionSum;
 #include "gl/front_sums.glsl"
 #endif
 
+#ifdef NO_SELF_MODULATION
+const int modulateSelf = 0;
+#else
 uniform int modulateSelf;
+#endif
 uniform ivec3 lookup;  // kernel, exact, levels of the pyramid
 uniform float largestSpread;
 
@@ -28,7 +33,20 @@ struct VeilHere {
   vec4 applied;       // 2: transmission times what is seen; its mean times (1 - that alpha)
 };
 
-#ifndef PUBLISHED
+#ifdef LEAN
+OitSums sumsAt(ivec2 pixel) {
+  LeanTargets targets;
+  targets.radiance = texelFetch(radianceSum, pixel, 0);
+  targets.depth = texelFetch(depthSum, pixel, 0);
+#ifdef GREY
+  targets.weight = vec4(0.0f);
+  return unpackLean(targets, true);
+#else
+  targets.weight = texelFetch(weightSum, pixel, 0);
+  return unpackLean(targets, false);
+#endif
+}
+#elif !defined(PUBLISHED)
 OitTargets targetsAt(ivec2 pixel) {
 #ifdef NO_LIGHT
   vec4 light = vec4(0.0f);
@@ -52,6 +70,8 @@ OitTargets targetsAt(ivec2 pixel) {
   return targets;
 #endif
 }
+
+OitSums sumsAt(ivec2 pixel) { return unpackSums(targetsAt(pixel)); }
 #endif
 
 VeilHere veilAt(ivec2 pixel) {
@@ -64,8 +84,7 @@ VeilHere veilAt(ivec2 pixel) {
   PublishedSums sums = publishedAt(pixel);
   bool any = anyPublished(sums);
 #else
-  OitTargets targets = targetsAt(pixel);
-  OitSums sums = unpackSums(targets);
+  OitSums sums = sumsAt(pixel);
   bool any = sums.count != 0.0f;
 #ifdef FRONT_TAIL
   FrontTargets nearest = frontAt(pixel);
@@ -108,7 +127,7 @@ VeilHere veilAt(ivec2 pixel) {
 #ifdef PUBLISHED
   vec2 depths = vec2(0.0f);  // no depth says what stands in front
 #else
-  vec2 depths = vec2(targets.light.a, texelFetch(nearestZ, pixel, 0).g);
+  vec2 depths = vec2(texelFetch(lightSum, pixel, 0).a, texelFetch(nearestZ, pixel, 0).g);
 #endif
   vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel);
   precise vec3 shown = veil.resolved.transmission * throughOnly(veil.resolved.transmission, vec3(seen));

@@ -9,11 +9,13 @@ layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
 layout(location = 0) out float frontZ;  // blended by MIN
 #elif defined(PUBLISHED)
 #include "gl/published_output.glsl"
+#elif defined(LEAN)
+#include "gl/lean_output.glsl"
 #else
 #include "gl/sums_output.glsl"
+#endif
 #ifdef FRONT_TAIL
 #include "gl/front_output.glsl"
-#endif
 #endif
 
 PLD_FRAME_LAYOUT uniform PldFrame {

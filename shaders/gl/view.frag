@@ -24,11 +24,15 @@ void main() {
   float unit = PLD_SCATTER_UNIT;
   if (sums.variance >= unit * unit || abs(sums.offset.x) >= unit || abs(sums.offset.y) >= unit) clamped.y = 1.0f;
 #else
-  OitSums sums = unpackSums(targetsAt(pixel));
+  OitSums sums = sumsAt(pixel);
   count = sums.count * 0.0625f;
   mean = vec3(meanColour(sums.numerator.r, sums.denominator.r), meanColour(sums.numerator.g, sums.denominator.g),
               meanColour(sums.numerator.b, sums.denominator.b));
+#ifdef LEAN
+  weight = sums.denominator / (vec3(1.0f) + sums.denominator);
+#else
   weight = weightOf(sums.denominator, sums.opacity);
+#endif
   added = sums.light;
   float largest = max(max(sums.numerator.r, sums.numerator.g), sums.numerator.b);
   largest = max(largest, max(max(sums.denominator.r, sums.denominator.g), sums.denominator.b));

@@ -58,7 +58,7 @@ struct Shot {
     Fragment fragment{};
     fragment.coverage = wanted.light && random.below(6) == 0 ? 0.0f : 0.9f * random.uniformf() + 0.05f;
     const float grey = random.uniformf();
-    fragment.transmission = wanted.coloured ? glm::vec3(random.uniformf(), random.below(3) ? random.uniformf() : 1.0f, grey) : glm::vec3(0.9f * grey);
+    fragment.transmission = wanted.coloured ? glm::vec3(random.uniformf(), random.below(3) || !wanted.light ? random.uniformf() : 1.0f, grey) : glm::vec3(0.9f * grey);
     fragment.radiance = glm::vec3(random.uniformf(), 50 * random.uniformf(), 0.01f);
     fragment.z = 1.0f + 8.0f * random.uniformf();
     glm::vec4 dispersion(0.0f);
@@ -143,6 +143,7 @@ void expectSameBits(const char* what, const Wanted& wanted) {
 }
 
 TEST(BridgeReplay, GreyLayersGiveTheOfflineBits) { expectSameBits("grey", {.coloured = false, .light = false}); }
+TEST(BridgeReplay, ColouredLayersGiveTheOfflineBits) { expectSameBits("coloured", {.light = false}); }
 TEST(BridgeReplay, ColouredLayersAndLightGiveTheOfflineBits) { expectSameBits("coloured, light", {}); }
 TEST(BridgeReplay, SolidsGiveTheOfflineBits) { expectSameBits("solids", {.solids = true}); }
 TEST(BridgeReplay, RefractionGivesTheOfflineBits) { expectSameBits("refraction", {.refracts = true}); }

@@ -30,7 +30,7 @@ struct Library {
 };
 const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine"}},
                               {"EGL/", {"engine_bridge/gl"}},
-                              {"GL/", {"engine_bridge/gl", "engine_bridge/c"}},
+                              {"GL/", {"engine_bridge/gl", "engine_bridge/c", "samples/vtk"}},
                               {"embree3/", {"engine_bridge/embree"}},
                               {"openvdb/", {"engine_bridge/scene"}},
                               {"OpenEXR/", {"gbuffer", "samples/generate"}}};

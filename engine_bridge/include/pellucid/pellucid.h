@@ -28,13 +28,17 @@
 #define PLD_API __attribute__((visibility("default")))
 #endif
 
+/* Of 32 bits, whatever value a host puts there. */
 #ifdef __cplusplus
+#define PLD_ENUM(name) enum name : int32_t
 extern "C" {
+#else
+#define PLD_ENUM(name) enum name
 #endif
 
 typedef struct pld_pass pld_pass; /* one view: its planes, its programs, its state */
 
-typedef enum pld_status {
+typedef PLD_ENUM(pld_status) {
   PLD_OK = 0,
   PLD_ERROR_ARGUMENT = 1,    /* a null pointer, or a value that no enumeration or range has */
   PLD_ERROR_VERSION = 2,     /* struct_size or version of another header than this library knows */
@@ -53,17 +57,17 @@ typedef enum pld_status {
 typedef void (*pld_proc)(void);
 typedef pld_proc (*pld_get_proc_address)(void* user, const char* name);
 
-typedef enum pld_log_level { PLD_LOG_ERROR = 0, PLD_LOG_WARNING = 1, PLD_LOG_INFO = 2 } pld_log_level;
+typedef PLD_ENUM(pld_log_level) { PLD_LOG_ERROR = 0, PLD_LOG_WARNING = 1, PLD_LOG_INFO = 2 } pld_log_level;
 /* Called on the thread of the call that logs; `text` lives until it returns. */
 typedef void (*pld_log)(void* user, pld_log_level level, const char* text);
 
-typedef enum pld_method {
+typedef PLD_ENUM(pld_method) {
   PLD_METHOD_PHENOMENOLOGICAL = 0, /* weighted sums, refraction and diffusion where the features ask */
   PLD_METHOD_WEIGHTED = 1,         /* the same sums; refuses the scattering features */
   PLD_METHOD_FRONT_TAIL = 2        /* the nearest layer exactly over weighted sums; geometry is drawn twice */
 } pld_method;
 
-typedef enum pld_tier {
+typedef PLD_ENUM(pld_tier) {
   PLD_TIER_FLOAT = 0,     /* 32-bit float planes: the bits of the offline program on the same fragments and order */
   PLD_TIER_HALF = 1,      /* the same planes in 16-bit floats; sums are clamped at 65504 */
   PLD_TIER_PUBLISHED = 2, /* RGBA16F + RGBA8 + RG8_SNORM, as McGuire and Mara 2017 print them */
@@ -71,7 +75,7 @@ typedef enum pld_tier {
 } pld_tier;
 
 /* What the scene's materials need. A plane that no feature asks for is neither kept nor written. */
-typedef enum pld_feature {
+typedef PLD_ENUM(pld_feature) {
   PLD_FEATURE_COLOURED = 1,   /* some material transmits colour; without it one opacity serves all channels */
   PLD_FEATURE_LIGHT = 2,      /* some material adds light: coverage 0, or transmission 1 in a channel */
   PLD_FEATURE_REFRACTION = 4, /* the plane of light comes with it, and with diffusion */
@@ -80,14 +84,14 @@ typedef enum pld_feature {
   PLD_FEATURE_SOLIDS = 32      /* some fragments hide everything: PLD_STAGE_SOLIDS is drawn before the layers */
 } pld_feature;
 
-typedef enum pld_flag {
+typedef PLD_ENUM(pld_flag) {
   PLD_FLAG_HOST_RESTORES = 1, /* nothing is saved or put back: the host sets all state of INTEGRATION.md itself */
   PLD_FLAG_TIMERS = 2,        /* GPU times of every stage, see pld_query() */
   PLD_FLAG_DEBUG_GROUPS = 4,  /* KHR_debug groups around every stage */
   PLD_FLAG_DEBUG_VIEWS = 8    /* pld_target.view may ask for a plane instead of the picture */
 } pld_flag;
 
-typedef enum pld_weight {
+typedef PLD_ENUM(pld_weight) {
   PLD_WEIGHT_BY_EQ5 = 0, /* McGuire and Mara 2017, eq. 5 */
   PLD_WEIGHT_BY_EQ7 = 1, /* McGuire and Bavoil 2013, eqs. 7 to 10 as printed */
   PLD_WEIGHT_BY_EQ8 = 2,
@@ -101,14 +105,14 @@ typedef enum pld_weight {
   PLD_WEIGHT_BY_NONE = 10
 } pld_weight;
 
-typedef enum pld_depth {
+typedef PLD_ENUM(pld_depth) {
   PLD_DEPTH_DEVICE = 0,  /* a depth texture; it also tests the layers, by LEQUAL or, reversed, GEQUAL */
   PLD_DEPTH_REVERSED = 1,
   PLD_DEPTH_LINEAR = 2   /* red of a float texture is planar view distance in scene units; 0 and less, or inf: nothing */
 } pld_depth;
 
-typedef enum pld_clip { PLD_CLIP_MINUS_ONE_TO_ONE = 0, PLD_CLIP_ZERO_TO_ONE = 1 } pld_clip; /* as glClipControl */
-typedef enum pld_rows { PLD_ROWS_UP = 0, PLD_ROWS_DOWN = 1 } pld_rows; /* texel row 0 is the picture's bottom, its top */
+typedef PLD_ENUM(pld_clip) { PLD_CLIP_MINUS_ONE_TO_ONE = 0, PLD_CLIP_ZERO_TO_ONE = 1 } pld_clip; /* as glClipControl */
+typedef PLD_ENUM(pld_rows) { PLD_ROWS_UP = 0, PLD_ROWS_DOWN = 1 } pld_rows; /* texel row 0 is the picture's bottom, its top */
 
 typedef struct pld_create_info {
   uint32_t struct_size; /* sizeof(pld_create_info) */
@@ -129,7 +133,7 @@ typedef struct pld_create_info {
   uint32_t texture_unit;    /* the seam reads this unit and the two after it, while stages are drawn */
 } pld_create_info;
 
-typedef enum pld_refract {
+typedef PLD_ENUM(pld_refract) {
   PLD_REFRACT_NOTHING = 0,
   PLD_REFRACT_AT_DISTANCE = 1, /* the background lies refract_distance behind every surface */
   PLD_REFRACT_AT_DEPTH = 2,    /* it lies at the opaque depth */
@@ -152,18 +156,19 @@ typedef struct pld_frame {
   float diffusion_k1;      /* metres, > 0; 0.5 */
 } pld_frame;
 
-typedef enum pld_stage {
+typedef PLD_ENUM(pld_stage) {
   PLD_STAGE_SOLIDS = 0, /* with PLD_FEATURE_SOLIDS: the same geometry, the nearest fragment that hides everything */
   PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth */
   PLD_STAGE_LAYERS = 2  /* all transparent geometry, in any order */
 } pld_stage;
 
-typedef enum pld_view {
+typedef PLD_ENUM(pld_view) {
   PLD_VIEW_PICTURE = 0,
   PLD_VIEW_LAYER_COUNT = 1,  /* grey: layers / 16; published: 1 where any */
   PLD_VIEW_MEAN_COLOUR = 2,  /* the layers' weighted mean */
   PLD_VIEW_TRANSMISSION = 3, /* beta */
-  PLD_VIEW_WEIGHT = 4,       /* mean weight of the occluders, per channel, over 1 + itself */
+  PLD_VIEW_WEIGHT = 4,       /* mean weight of the occluders, per channel, over 1 + itself; without
+                                PLD_FEATURE_LIGHT the sum of weight times opacity, over 1 + itself */
   PLD_VIEW_LIGHT = 5,        /* light that adds */
   PLD_VIEW_OFFSET = 6,       /* red, green: 0.5 + offset / 128 px; blue: 1 where anything refracts */
   PLD_VIEW_SPREAD = 7,       /* D / 64 px */
@@ -171,7 +176,7 @@ typedef enum pld_view {
   PLD_VIEW_SOLID = 9         /* colour of the nearest solid */
 } pld_view;
 
-typedef enum pld_target_kind { PLD_TARGET_TEXTURE = 0, PLD_TARGET_FRAMEBUFFER = 1 } pld_target_kind;
+typedef PLD_ENUM(pld_target_kind) { PLD_TARGET_TEXTURE = 0, PLD_TARGET_FRAMEBUFFER = 1 } pld_target_kind;
 
 typedef struct pld_target {
   uint32_t struct_size; /* sizeof(pld_target) */
@@ -180,7 +185,7 @@ typedef struct pld_target {
   pld_view view;
 } pld_target;
 
-typedef enum pld_value {
+typedef PLD_ENUM(pld_value) {
   PLD_VALUE_BITS_PER_PIXEL = 0, /* of the planes that layers are blended into */
   PLD_VALUE_BYTES = 1,          /* of all textures of this pass, since pld_resize() */
   PLD_VALUE_PLANES = 2,         /* how many textures layers are blended into */

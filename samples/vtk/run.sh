@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# The VTK sample with a weight that the offline program fits to its scene.
+#   run.sh FOLDER_OF_PROGRAMS OUTDIR [FLAGS OF pellucid_vtk]
+set -euo pipefail
+programs=$1 out=$2
+shift 2
+mkdir -p "$out"
+"$programs/pellucid_vtk" "$out" --write-scene "$@"
+"$programs/pellucid" composite "$out/wall.exr" "$out/parts.glb" -o "$out/fitted.exr" --method weighted --weight auto --aa 1 \
+  2>"$out/fit.txt" >/dev/null || { cat "$out/fit.txt" >&2; exit 1; }
+exponent=$(grep -o 'power:[0-9.]*' "$out/fit.txt" | cut -d: -f2)
+echo "fitted weight: z to the power of -$exponent"
+exec xvfb-run -a -s "-screen 0 1920x1080x24 -noreset" "$programs/pellucid_vtk" "$out" --weight "$exponent:0.5:5000" "$@"
