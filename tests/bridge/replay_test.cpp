@@ -58,7 +58,9 @@ struct Shot {
     Fragment fragment{};
     fragment.coverage = wanted.light && random.below(6) == 0 ? 0.0f : 0.9f * random.uniformf() + 0.05f;
     const float grey = random.uniformf();
-    fragment.transmission = wanted.coloured ? glm::vec3(random.uniformf(), random.below(3) || !wanted.light ? random.uniformf() : 1.0f, grey) : glm::vec3(0.9f * grey);
+    // Within a thousandth of 1 it adds light.
+    const float most = wanted.light ? 1.0f : 0.998f;
+    fragment.transmission = most * (wanted.coloured ? glm::vec3(random.uniformf(), random.below(3) || !wanted.light ? random.uniformf() : 1.0f, grey) : glm::vec3(0.9f * grey));
     fragment.radiance = glm::vec3(random.uniformf(), 50 * random.uniformf(), 0.01f);
     fragment.z = 1.0f + 8.0f * random.uniformf();
     glm::vec4 dispersion(0.0f);

@@ -77,7 +77,8 @@ typedef PLD_ENUM(pld_tier) {
 /* What the scene's materials need. A plane that no feature asks for is neither kept nor written. */
 typedef PLD_ENUM(pld_feature) {
   PLD_FEATURE_COLOURED = 1,   /* some material transmits colour; without it one opacity serves all channels */
-  PLD_FEATURE_LIGHT = 2,      /* some material adds light: coverage 0, or transmission 1 in a channel */
+  PLD_FEATURE_LIGHT = 2,      /* some material adds light: coverage 0, or transmission above .999 in a channel;
+                                 without it such light is lost */
   PLD_FEATURE_REFRACTION = 4, /* the plane of light comes with it, and with diffusion */
   PLD_FEATURE_DIFFUSION = 8,
   PLD_FEATURE_DISPERSION = 16, /* refraction of its own for red and blue; not in the published tier */
