@@ -28,6 +28,7 @@ struct AccumulateFlags {
   ScatterFlags scatter;
   FoliageFlags foliage;
   FogFlags fog;
+  ParticleFlags particles;
   LowResFlags lowRes;
   RunFlags run;
 };
@@ -49,7 +50,7 @@ OitPlanes exactPlanes(TransparentPass& pass, const PassSettings& settings, const
 void accumulate(const AccumulateFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.fog.traced());
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
   if (!shot->deep.empty())
     throw UsageError(fmt::format("{}: accumulate takes glTF only: found deep samples, which composite takes",
                                  shot->deep[0]->path()));
@@ -62,8 +63,9 @@ void accumulate(const AccumulateFlags& flags) {
   flags.scene.applyTo(settings);
   flags.method.applyTo(settings, shot->camera);
   flags.scatter.applyTo(settings);
-  settings.fog =
-      flags.fog.place(*shot, flags.read.unit, flags.method.isPublished() ? "--precision published" : "", stages);
+  Air air(*shot, nullptr, flags.scenes, flags.scene.options(flags.read.unit, true));
+  settings.fog = flags.fog.place(*shot, air, flags.read.unit, flags.method.isPublished() ? "--precision published" : "", stages);
+  settings.particleLight = flags.particles.place(*shot, air, stages);
   if (flags.foliage.isApart() && flags.method.precision != "float")
     throw UsageError(fmt::format("--occlusion: found apart with --precision {}, expected float: rims are summed in floats",
                                  flags.method.precision));
@@ -107,6 +109,7 @@ void addAccumulate(CLI::App& app) {
   flags->scatter.addTo(*verb);
   flags->foliage.addTo(*verb, true);
   flags->fog.addTo(*verb);
+  flags->particles.addTo(*verb);
   flags->lowRes.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { accumulate(*flags); });

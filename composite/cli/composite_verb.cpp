@@ -38,6 +38,7 @@ struct CompositeFlags {
   RunFlags run;
   ShadowFlags shadow;
   FogFlags fog;
+  ParticleFlags particles;
   StochasticFlags stochastic;
   int samples = kDefaultSamples;
   std::optional<double> tolerance;
@@ -53,8 +54,7 @@ void composite(const CompositeFlags& flags) {
   const std::optional<ChosenMethod> chosen = flags.method.listMethod();
   settings.stochastic = flags.stochastic.settings(flags.method.method, flags.samples, flags.shadow.mapped());
   settings.lookup = flags.lookup.settings();
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages,
-                             flags.shadow.exact() || flags.fog.traced());
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.shadow.exact());
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   if (flags.tolerance && flags.method.method != "phenomenological" && flags.method.method != "weighted")
     throw UsageError(
@@ -91,11 +91,6 @@ void composite(const CompositeFlags& flags) {
                              : !shot->deep.empty() || shot->deepOpaque   ? "deep EXR"
                                                                          : "";
   settings.lowResolution = flags.lowRes.factorFor(shot->scene, listed);
-  settings.pass.fog = flags.fog.place(*shot, flags.read.unit,
-                                      flags.method.isPublished()  ? "--precision published"
-                                      : flags.systems != "off" ? "--systems"
-                                                               : "",
-                                      stages);
   std::unique_ptr<GlContext> context;
   const auto device = [&]() -> GlContext& {
     if (!context) stages.time("GL context", [&] { context = std::make_unique<GlContext>(flags.scene.device); });
@@ -104,6 +99,15 @@ void composite(const CompositeFlags& flags) {
   const ShadowResult shadows = stages.time("shadows", [&] {
     return castShadows(flags.shadow, *shot, flags.samples, static_cast<std::uint32_t>(flags.stochastic.seed), device);
   });
+  {
+    Air air(*shot, shadows.maps, flags.scenes, flags.scene.options(flags.read.unit, true));
+    settings.pass.fog = flags.fog.place(*shot, air, flags.read.unit,
+                                        flags.method.isPublished() ? "--precision published"
+                                        : flags.systems != "off"   ? "--systems"
+                                                                   : "",
+                                        stages);
+    settings.pass.particleLight = flags.particles.place(*shot, air, stages);
+  }
 
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
@@ -203,6 +207,7 @@ void addComposite(CLI::App& app) {
   flags->foliage.addTo(*verb);
   flags->shadow.addTo(*verb);
   flags->fog.addTo(*verb);
+  flags->particles.addTo(*verb);
   flags->stochastic.addTo(*verb);
   flags->lookup.addResolverTo(*verb);
   flags->lowRes.addTo(*verb);

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "engine_bridge/embree/air_shadows.h"
 #include "engine_bridge/scene/ambient.h"
 #include "engine_bridge/scene/blocks.h"
 #include "engine_bridge/scene/density_grid.h"
@@ -149,11 +148,7 @@ void FogFlags::addTo(CLI::App& verb) {
                   "FILE.vdb[:GRID]: an OpenVDB density grid (`density` by default), multiplied by --fog density=D (1)");
 }
 
-bool FogFlags::traced() const {
-  return on() && readFog(fog).shafts > 0;
-}
-
-std::shared_ptr<const Fog> FogFlags::place(const Shot& shot, double metresPerUnit, const std::string& why,
+std::shared_ptr<const Fog> FogFlags::place(const Shot& shot, Air& air, double metresPerUnit, const std::string& why,
                                            Stages& stages) const {
   if (!on()) return nullptr;
   if (!why.empty()) throw UsageError(fmt::format("--fog: found it with {}, which takes none", why));
@@ -185,11 +180,8 @@ std::shared_ptr<const Fog> FogFlags::place(const Shot& shot, double metresPerUni
   Fog placed = placeFog(medium, shot.camera, ambient, lightBlocks(shot.scene.lights, shot.camera));
   if (text.shafts > 0 && !placed.lights.empty()) {
     placed.visibility = stages.time("light in fog", [&] {
-      const AirShadows shadows(shot.scene, shot.camera);
-      if (!shadows.hasOpaque())
-        spdlog::info("fog: the glTF holds nothing opaque, so nothing opaque casts shadows in the fog");
       return sampleLights(placed, fogBounds(medium, shot.camera, shot.opaque.gbuffer), text.shafts,
-                          [&](std::size_t light, const glm::dvec3& point) { return shadows.visible(light, point); });
+                          air.surfacesAndParticles());
     });
   } else if (medium.grid && !placed.lights.empty()) {
     // What the grid itself leaves of the lights belongs to the grid, not to shafts.

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "composite/cli/shot.h"
+#include "composite/cli/particle_flags.h"
 #include "engine_bridge/gl/transparent_pass.h"
 
 namespace pellucid::cli {
@@ -22,11 +22,10 @@ struct FogFlags {
   std::string fog, grid;
   void addTo(CLI::App& verb);
   bool on() const { return !fog.empty() || !grid.empty(); }
-  // Rays will meet the scene's triangles.
-  bool traced() const;
   // Null when off. Throws UsageError, MeaningError (nothing to place it by), and what readDensityGrid throws.
   //   why  what cannot have fog, "" when all can
-  std::shared_ptr<const Fog> place(const Shot& shot, double metresPerUnit, const std::string& why, Stages& stages) const;
+  std::shared_ptr<const Fog> place(const Shot& shot, Air& air, double metresPerUnit, const std::string& why,
+                                   Stages& stages) const;
 };
 
 }  // namespace pellucid::cli

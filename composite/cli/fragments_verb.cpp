@@ -23,6 +23,7 @@ struct FragmentsFlags {
   SceneFlags scene;
   FoliageFlags foliage;
   FogFlags fog;
+  ParticleFlags particles;
   RunFlags run;
 };
 
@@ -112,13 +113,15 @@ class RowGatherer {
 void fragmentsVerb(const FragmentsFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.fog.traced());
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   PassSettings settings;
   settings.surroundings = shot->surroundings;
   settings.environment = shot->environment;
   flags.scene.applyTo(settings);
-  settings.fog = flags.fog.place(*shot, flags.read.unit, "", stages);
+  Air air(*shot, nullptr, flags.scenes, flags.scene.options(flags.read.unit, true));
+  settings.fog = flags.fog.place(*shot, air, flags.read.unit, "", stages);
+  settings.particleLight = flags.particles.place(*shot, air, stages);
 
   DeepHeader header;
   header.display = gbuffer.display;
@@ -161,6 +164,7 @@ void addFragments(CLI::App& app) {
   flags->scene.addTo(*verb);
   flags->foliage.addTo(*verb);
   flags->fog.addTo(*verb);
+  flags->particles.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { fragmentsVerb(*flags); });
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "composite/cli/particle_flags.h"
 #include "composite/shadows.h"
 #include "engine_bridge/embree/shadow_rays.h"
 #include "engine_bridge/gl/shadow_pass.h"
@@ -165,10 +166,12 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std:
       throw MeaningError(fmt::format("--light: found no light '{}' in the glTF, expected one of {}", name, names));
 
   std::optional<ShadowRays> rays;
+  std::optional<ParticleShadows> particles;
   if (flags.exact())
     rays.emplace(shot.scene, shot.camera);
   else
     result.maps = drawMaps(flags, shot, seed, device());
+  if (rays) particles.emplace(shot);
   std::vector<Image<glm::vec3>> visibility, layers;
   std::vector<std::size_t> without;
   for (const std::size_t i : lit) {
@@ -182,6 +185,7 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std:
                       name, layer, listNames(nameChannels(shot.opaque.document))));
     visibility.push_back(rays ? rays->visibility(i, shot.opaque.gbuffer, samples)
                               : mappedVisibility(*result.maps, i, shot.opaque.gbuffer, shot.camera, samples));
+    if (rays) particles->dim(i, visibility.back());
     if (!part) without.push_back(i);
     layers.push_back(part ? std::move(*part) : Image<glm::vec3>());
   }

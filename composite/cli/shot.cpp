@@ -61,12 +61,6 @@ std::string namesOf(const std::vector<SceneCamera>& cameras) {
   return names.empty() ? "none" : names;
 }
 
-bool isExrName(const std::string& path) {
-  std::string end = path.substr(path.size() - std::min<std::size_t>(path.size(), 4));
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
-  return end == ".exr";
-}
-
 // A picture all of whose parts are deep becomes shot.deepOpaque, and what it flattens to.
 OpaqueFile readPicture(const std::string& path, const ReadOptions& options, const Camera* camera, Shot& shot) {
   ExrDocument document = readExr(path);
@@ -98,6 +92,12 @@ OpaqueFile readPicture(const std::string& path, const ReadOptions& options, cons
 }
 
 }  // namespace
+
+bool isExrName(const std::string& path) {
+  std::string end = path.substr(path.size() - std::min<std::size_t>(path.size(), 4));
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  return end == ".exr";
+}
 
 Camera chooseCamera(const std::string& flag, const GBuffer& gbuffer, const Scene& scene,
                     const std::string& opaquePath) {

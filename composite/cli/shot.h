@@ -31,6 +31,8 @@ std::unique_ptr<Shot> loadShot(const std::string& opaquePath, const std::vector<
                                const ReadFlags& read, const SceneFlags& sceneFlags, Stages& stages,
                                bool traced = false);
 
+bool isExrName(const std::string& path);  // a deep file rather than glTF
+
 // The camera of a shot, by flag, file attribute or glTF, in this order.
 Camera chooseCamera(const std::string& flag, const GBuffer& gbuffer, const Scene& scene, const std::string& opaquePath);
 

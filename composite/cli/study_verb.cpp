@@ -35,6 +35,7 @@ struct StudyFlags {
   LookupFlags lookup;
   FoliageFlags foliage;
   FogFlags fog;
+  ParticleFlags particles;
   RunFlags run;
   std::vector<int> samples{1};
   std::vector<std::string> precisions{"float"};
@@ -162,7 +163,7 @@ void study(const StudyFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
   const std::vector<Candidate> candidates = candidatesOf(flags);
-  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages, flags.fog.traced());
+  const auto shot = loadShot(flags.opaque, flags.scenes, flags.read, flags.scene, stages);
   const GBuffer& gbuffer = shot->opaque.gbuffer;
   std::error_code error;
   std::filesystem::create_directories(flags.folder, error);
@@ -175,7 +176,9 @@ void study(const StudyFlags& flags) {
   flags.method.applyTo(settings.pass, shot->camera);
   flags.scatter.applyTo(settings.pass);
   settings.lookup = flags.lookup.settings();
-  settings.pass.fog = flags.fog.place(*shot, flags.read.unit, "", stages);
+  Air air(*shot, nullptr, flags.scenes, flags.scene.options(flags.read.unit, true));
+  settings.pass.fog = flags.fog.place(*shot, air, flags.read.unit, "", stages);
+  settings.pass.particleLight = flags.particles.place(*shot, air, stages);
   std::unique_ptr<GlContext> context;
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
@@ -277,6 +280,7 @@ void addStudy(CLI::App& app) {
   flags->scene.addTo(*verb);
   flags->foliage.addTo(*verb);
   flags->fog.addTo(*verb);
+  flags->particles.addTo(*verb);
   flags->method.addWeightTo(*verb, true);
   verb->add_option("--threads", flags->run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
   verb->add_flag("--json", flags->run.json, "Print the table as JSON");

@@ -66,7 +66,8 @@ TransparentScene::TransparentScene(const Scene& scene, const Camera& camera)
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(scene.instances[i].primitive));
     const Material& material = scene.materials.at(static_cast<std::size_t>(primitive.material));
-    if (material.transparent()) parts_.push_back({this, static_cast<std::uint32_t>(i), !material.doubleSided});
+    // Particles have no surface: what they hide of a light is their grid's (scene/particle_grid.h).
+    if (material.transparent() && !primitive.points) parts_.push_back({this, static_cast<std::uint32_t>(i), !material.doubleSided});
   }
   for (Part& part : parts_) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);

@@ -21,8 +21,10 @@ struct FrameBlock {
   std::int32_t atlasEdge = 0;
   float footprint = 1.0f;  // edge of what one sample stands for, pixels
   std::int32_t originX = 0, originY = 0;
+  glm::mat4 volumeFromView{1.0f};  // to texels of the light volume, centres at +0.5
+  glm::ivec4 volumeTexels{1};      // of one light
 };
-static_assert(sizeof(FrameBlock) == 240);
+static_assert(sizeof(FrameBlock) == 320);
 static_assert(offsetof(FrameBlock, weightNear) == 80 && offsetof(FrameBlock, bandX) == 96);
 static_assert(offsetof(FrameBlock, lightCount) == 112 && offsetof(FrameBlock, viewport) == 120);
 

@@ -1,15 +1,11 @@
 #include "engine_bridge/gl/fog_pass.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "gbuffer/errors.h"
 
 namespace pellucid::gl {
 namespace {
 
-constexpr GLuint kDensityUnit = 12, kVisibilityUnit = 13, kValuesBlock = 2, kLightsBlock = 1;  // shaders/gl/fog.frag
+constexpr GLuint kDensityUnit = 12, kValuesBlock = 2, kLightsBlock = 1;  // shaders/gl/fog.frag
 
 // Mirrors FogValues of shaders/gl/fog.frag.
 struct FogBlock {
@@ -22,23 +18,6 @@ struct FogBlock {
 };
 static_assert(sizeof(shading::Medium) == 12 * 16 && sizeof(FogBlock) == 20 * 16);
 
-Texture3d upload3d(glm::ivec3 size, GLenum stored, GLenum format, const void* texels) {
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
-  if (std::max({size.x, size.y, size.z}) > most)
-    throw ResourceError(fmt::format("GL: a volume of {}x{}x{} texels: the device holds at most {} along an edge", size.x,
-                                    size.y, size.z, most));
-  Texture3d texture = Texture3d::make();
-  glTextureStorage3D(texture.name(), 1, stored, size.x, size.y, size.z);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  glTextureSubImage3D(texture.name(), 0, 0, 0, 0, size.x, size.y, size.z, format, GL_FLOAT, texels);
-  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  checkGl("uploading a volume of fog");
-  return texture;
-}
-
 }  // namespace
 
 void FogPass::upload(const Fog& fog) {
@@ -49,12 +28,7 @@ void FogPass::upload(const Fog& fog) {
     density_ = fog.grid ? upload3d(fog.grid->density.size, GL_R32F, GL_RED, fog.grid->density.texels.data())
                         : upload3d(glm::ivec3(1), GL_R32F, GL_RED, &one);
   }
-  if (!visibility_ || visibilityOf_ != fog.visibility) {
-    visibilityOf_ = fog.visibility;
-    visibility_ = fog.visibility ? upload3d(fog.visibility->visibility.size, GL_RGBA32F, GL_RGBA,
-                                            fog.visibility->visibility.texels.data())
-                                 : upload3d(glm::ivec3(1), GL_RGBA32F, GL_RGBA, &open);
-  }
+  if (!open_) open_ = upload3d(glm::ivec3(1), GL_RGBA32F, GL_RGBA, &open);
 }
 
 void FogPass::draw(const Fog& fog, const FogFrame& frame) {
@@ -84,9 +58,11 @@ void FogPass::draw(const Fog& fog, const FogFrame& frame) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kValuesBlock, values_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLightsBlock, lights_.name());
   glBindTextureUnit(kDensityUnit, density_.name());
-  glBindTextureUnit(kVisibilityUnit, visibility_.name());
   glBindSampler(kDensityUnit, 0);
-  glBindSampler(kVisibilityUnit, 0);
+  if (fog.visibility)
+    visibility_.bind(fog.visibility);
+  else
+    glBindTextureUnit(kLightVolumeUnit, open_.name());
   glBindVertexArray(noVertices_.name());
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_CULL_FACE);

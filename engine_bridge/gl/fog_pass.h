@@ -5,19 +5,10 @@
 
 #include "engine_bridge/gl/gl_objects.h"
 #include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/volume_texture.h"
 #include "gbuffer/medium.h"
 
 namespace pellucid::gl {
-
-struct Texture3dKind {
-  static GLuint create() {
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_3D, 1, &name);
-    return name;
-  }
-  static void destroy(GLuint name) { glDeleteTextures(1, &name); }
-};
-using Texture3d = Handle<Texture3dKind>;
 
 // What the targets that are bound, and the frame's block, want of it.
 struct FogFrame {
@@ -35,9 +26,9 @@ class FogPass {
   ProgramCache programs_;
   Buffer values_, lights_;
   VertexArray noVertices_;
-  Texture3d density_, visibility_;
+  Texture3d density_, open_;
+  VolumeTexture visibility_;
   std::shared_ptr<const DensityGrid> densityOf_;     // what density_ holds
-  std::shared_ptr<const LightVolume> visibilityOf_;  // what visibility_ holds
 };
 
 }  // namespace pellucid::gl

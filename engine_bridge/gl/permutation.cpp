@@ -5,7 +5,7 @@
 namespace pellucid::gl {
 
 std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame,
-                                        bool infers) {
+                                        bool infers, bool points) {
   std::vector<std::string> defines;
   auto define = [&defines](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
@@ -29,6 +29,11 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("TRANSMISSION_TEXTURE", transmits && material.transmissionTexture.texture >= 0);
   define("VOLUME", transmits && hasVolume(material));
   define("THICKNESS_TEXTURE", transmits && hasVolume(material) && material.thicknessTexture.texture >= 0);
+  define("POINTS", points);
+  define("SOFT", material.softness > 0.0f && !points);
+  const bool particle = lit && (points || material.billboard);
+  define("PARTICLE", particle);
+  define("LIGHT_VOLUME", particle && frame.lights && frame.lightVolume);
   const bool bends = frame.refracts && (refracts(material) || !frame.prune);
   define("REFRACTS", bends);
   define("REFRACTION_TEXTURE", bends && material.thicknessTexture.texture >= 0);

@@ -29,15 +29,17 @@ struct FrameFeatures {
   bool occludes = false;                    // there are occluders for cut-out materials
   int rimForm = -1;                         // PLD_OCCLUSION_* of their rims; < 0 leaves rims open
   bool probes = false;                      // lists of some pixels alone
+  bool lightVolume = false;                 // what of the lights reaches particles is known
   bool prune = true;                        // else every material gets the text of every phenomenon
 
   bool scatters() const { return refracts || diffuses; }
 };
 
 // Defines for shaders/gl/transparent.frag.
+//   points  the primitive's triangles are particles
 //   infers  the material's rims take their occlusion from their neighbours (infersOcclusion)
 std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame,
-                                        bool infers = false);
+                                        bool infers = false, bool points = false);
 std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, int weight, int normalisation);
 
 }  // namespace pellucid::gl

@@ -45,6 +45,7 @@ Program buildProgram(const std::string& vertexStage, const std::string& fragment
   program.normalFromObject = glGetUniformLocation(name, "normalFromObject");
   program.thicknessScale = glGetUniformLocation(name, "thicknessScale");
   program.instanceIdentity = glGetUniformLocation(name, "instanceIdentity");
+  program.pointScale = glGetUniformLocation(name, "pointScale");
   program.turn = glGetUniformLocation(name, "turn");
   return program;
 }

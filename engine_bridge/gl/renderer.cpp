@@ -128,6 +128,7 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.lights = lights_ > 0;
   features_.environment = settings.environment != nullptr;
   features_.surroundings = !features_.environment && settings.surroundings != glm::vec3(0.0f);
+  features_.lightVolume = settings.particleLight != nullptr;
   features_.solids = needs.solids || all;
   features_.adds = needs.adds;
   features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (needs.refracts || all);
@@ -184,7 +185,8 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   chooseFeatures(settings);
   for (std::size_t i = 0; i < shaders_.size(); ++i) {
     shaders_[i].surface = surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
-                                         shaders_[i].vertexColours, features_, shaders_[i].infers);
+                                         shaders_[i].vertexColours, features_, shaders_[i].infers,
+                                         scene_.primitives[i].points);
     std::fill(std::begin(shaders_[i].programs), std::end(shaders_[i].programs), nullptr);
   }
 
@@ -219,6 +221,11 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   frame_.originX = superTile.x0;
   frame_.originY = superTile.y0;
   frame_.atlasEdge = settings.environment ? settings.environment->edge : 0;
+  if (settings.particleLight) {
+    frame_.volumeFromView = settings.particleLight->texelFromView;
+    frame_.volumeTexels = {settings.particleLight->size, 1};
+    particleLight_.bind(settings.particleLight);
+  }
   uploadSurroundings();
   uploadFrame();
 
@@ -319,6 +326,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
     glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
     glUniform1f(program->thicknessScale, placed.thicknessScale);
+    glUniform1f(program->pointScale, placed.thicknessScale * material.pointScale);
     glUniform1ui(program->instanceIdentity, instance.identity);
     const auto corners = static_cast<GLsizei>(one.triangles * 3);
     // The stage pulls its vertices: it needs all three of a triangle, and its number.

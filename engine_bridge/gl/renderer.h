@@ -11,6 +11,7 @@
 #include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/scene_textures.h"
 #include "engine_bridge/gl/targets.h"
+#include "engine_bridge/gl/volume_texture.h"
 #include "engine_bridge/scene/placed.h"
 
 namespace pellucid::gl {
@@ -98,6 +99,7 @@ class Renderer {
   FrameBlock frame_;
   std::optional<Targets> targets_;
   Texture opaqueZ_, atlas_, occluders_;
+  VolumeTexture particleLight_;
   std::shared_ptr<const Surroundings> atlasOf_;  // what atlas_ holds
   Window opaqueZPart_, occludersPart_;
   std::shared_ptr<const OccluderPlanes> uploadedOccluders_;

@@ -80,8 +80,8 @@ ShadowDrawer::ShadowDrawer(const Scene& scene, const Camera& camera, const GBuff
       const ColourRange colours = coloursOf(primitive);
       const bool vertexColours = colours.least != glm::vec4(1.0f) || colours.most != glm::vec4(1.0f);
       look.casts = true;
-      look.bothSides = material.doubleSided || !isClosed(primitive);
-      look.defines = surfaceDefines(material, vertexColours, features);
+      look.bothSides = primitive.points || material.doubleSided || !isClosed(primitive);
+      look.defines = surfaceDefines(material, vertexColours, features, false, primitive.points);
       std::erase(look.defines, "NORMAL_TEXTURE");  // a caster is as dense as its mesh says
       look.defines.emplace_back("EXACT_COVERAGE");
       if (canTransmitColour(material, vertexColours)) grey_ = false;
@@ -245,6 +245,8 @@ void ShadowDrawer::drawCasters() {
       glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
       glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
       glUniform1f(program->thicknessScale, placed.thicknessScale);
+      glUniform1f(program->pointScale,
+                  placed.thicknessScale * scene_.materials[static_cast<std::size_t>(boundMaterial)].pointScale);
       glUniform1ui(program->instanceIdentity, instance.identity);
       glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.firstTriangle * 3), static_cast<GLsizei>(one.triangles * 3));
     }

@@ -10,7 +10,6 @@
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
-#include "gbuffer/medium.h"
 #include "gbuffer/occluders.h"
 #include "gbuffer/published.h"
 #include "gbuffer/rim_planes.h"
@@ -18,6 +17,7 @@
 namespace pellucid {
 
 struct Fog;  // gbuffer/medium.h
+struct LightVolume;
 
 enum class TextureFilter { mipmap, bilinear, nearest };
 enum class MaskEdge { smooth, hard };
@@ -76,6 +76,7 @@ struct PassSettings {
   OcclusionSettings occlusion;
   LayerChoice layers = LayerChoice::all;
   int probeCell = 1;  // above 1, lists hold one pixel of every cell of this edge alone: shaders/shared/probe.glsl
+  std::shared_ptr<const LightVolume> particleLight;  // what of the lights reaches particles; null: all of them do
   std::shared_ptr<const Fog> fog;  // marched in front of what is opaque, into the sums; lists leave it to their reader
 };
 

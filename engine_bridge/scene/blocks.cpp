@@ -54,6 +54,7 @@ MaterialBlock materialBlock(const Material& material) {
   const glm::vec3 etas =
       disperses(material) ? shading::dispersedEta(material.ior, material.dispersion) : glm::vec3(eta);
   block.dispersion = {etas.r, etas.b, 0.0f, 0.0f};
+  block.particle = {material.softness, material.phase, 0.0f, 0.0f};
   // One that states no collimation and does not diffuse is clear.
   block.scattering = {material.collimation ? *material.collimation
                       : diffuses(material) ? -1.0f

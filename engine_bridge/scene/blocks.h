@@ -20,8 +20,9 @@ struct MaterialBlock {
   glm::vec4 uvTransforms[16];
   glm::vec4 scattering;  // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
   glm::vec4 dispersion;  // eta of red, of blue
+  glm::vec4 particle;    // softness, metres; g of its phase function
 };
-static_assert(sizeof(MaterialBlock) == 24 * 16);
+static_assert(sizeof(MaterialBlock) == 25 * 16);
 
 using shading::PunctualLight;
 static_assert(sizeof(PunctualLight) == 64);

@@ -167,6 +167,11 @@ class FileLoader {
       }
     } else if (std::optional<Primitive> primitive = primitives_.read(source, *drawn.pose, bumpy(source))) {
       primitive->material = materialOf(source);
+      if (primitive->points && !scene_.materials[static_cast<std::size_t>(primitive->material)].transparent()) {
+        notes_.add(source.where() + ": its points are opaque and are not drawn; particles want a material that blends");
+        loaded_.emplace(key, -1);
+        return -1;
+      }
       const TextureRef& normals = scene_.materials[static_cast<std::size_t>(primitive->material)].normalTexture;
       if (normals.texture >= 0 && !hasTangents(*primitive)) makeTangents(*primitive, normals);
       result = static_cast<int>(scene_.primitives.size());

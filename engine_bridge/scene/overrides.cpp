@@ -18,11 +18,11 @@ std::optional<bool> parseBool(const std::string& text) {
   return std::nullopt;
 }
 
-std::optional<float> parseUnit(const std::string& text) {
+std::optional<float> parseWithin(const std::string& text, float least, float most) {
   float value = 0.0f;
   const char* const end = text.data() + text.size();
   const auto [stopped, problem] = std::from_chars(text.data(), end, value);
-  if (problem != std::errc() || stopped != end || !(value >= 0.0f && value <= 1.0f)) return std::nullopt;
+  if (problem != std::errc() || stopped != end || !(value >= least && value <= most)) return std::nullopt;
   return value;
 }
 
@@ -42,13 +42,17 @@ std::string materialNames(const std::vector<Material>& materials) {
 }  // namespace
 
 const char* const kSetKeys =
-    "collimation and coverage (0 to 1), additive, lowResolution, castsShadow and thin (true or false)";
+    "collimation and coverage (0 to 1), additive, lowResolution, castsShadow, thin and billboard (true or false), "
+    "softness (metres) and pointScale (0 to 1e6), phase (-0.98 to 0.98)";
 
 SetResult setKey(Material& material, const std::string& key, const std::string& value) {
-  const bool isNumber = key == "collimation" || key == "coverage";
-  const bool isFlag = key == "additive" || key == "lowResolution" || key == "castsShadow" || key == "thin";
+  const bool isLength = key == "softness" || key == "pointScale", isPhase = key == "phase";
+  const bool isNumber = key == "collimation" || key == "coverage" || isLength || isPhase;
+  const bool isFlag = key == "additive" || key == "lowResolution" || key == "castsShadow" || key == "thin" ||
+                      key == "billboard";
   if (!isNumber && !isFlag) return SetResult::unknownKey;
-  const std::optional<float> unit = isNumber ? parseUnit(value) : std::nullopt;
+  const std::optional<float> unit =
+      isNumber ? parseWithin(value, isPhase ? -0.98f : 0.0f, isLength ? 1e6f : isPhase ? 0.98f : 1.0f) : std::nullopt;
   const std::optional<bool> flag = isFlag ? parseBool(value) : std::nullopt;
   if (!unit && !flag) return SetResult::badValue;
   if (key == "collimation") material.collimation = unit;
@@ -57,6 +61,10 @@ SetResult setKey(Material& material, const std::string& key, const std::string& 
   if (key == "lowResolution") material.lowResolution = *flag;
   if (key == "castsShadow") material.castsShadow = *flag;
   if (key == "thin") material.thin = flag;
+  if (key == "billboard") material.billboard = *flag;
+  if (key == "softness") material.softness = *unit;
+  if (key == "pointScale") material.pointScale = *unit;
+  if (isPhase) material.phase = *unit;
   return SetResult::done;
 }
 

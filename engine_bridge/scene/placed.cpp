@@ -19,6 +19,13 @@ std::vector<Placed> placeInstances(const Scene& scene, const Camera& camera) {
   for (const Instance& instance : scene.instances) {
     Placed placed;
     placed.viewFromObject = camera.viewFromWorld * instance.worldFromObject;
+    const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(instance.primitive));
+    if (scene.materials.at(static_cast<std::size_t>(primitive.material)).billboard)
+      for (int c = 0; c < 3; ++c) {  // as large as it was, its axes the camera's
+        const double size = glm::length(glm::dvec3(placed.viewFromObject[c]));
+        placed.viewFromObject[c] = glm::dvec4(0.0);
+        placed.viewFromObject[c][c] = size;
+      }
     const glm::dmat3 linear(placed.viewFromObject);
     const double volume = glm::determinant(linear);
     glm::dmat3 normal = cofactors(linear);

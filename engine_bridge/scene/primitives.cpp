@@ -86,8 +86,9 @@ void PrimitiveReader::charge(std::size_t elements, const JsonView& user) {
 std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const Pose& pose, bool decode) {
   const std::size_t mode = primitive.unsignedInteger("mode", kTriangles);
   if (mode > kTriangleFan) primitive.at("mode").refuse(fmt::format("is {}; expected 0 to 6", mode));
+  if (mode == kPoints) return points(primitive, pose);
   if (mode < kTriangles) {
-    ++points_;
+    ++lines_;
     return std::nullopt;
   }
   draco_.reset();
@@ -142,6 +143,39 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const 
   return result;
 }
 
+std::optional<Primitive> PrimitiveReader::points(const JsonView& primitive, const Pose& pose) {
+  if (pose.moves()) notes_->add(primitive.where() + ": points of skins and morph targets stand as the file has them");
+  draco_.reset();
+  inPlace_ = stream_;
+  const JsonView attributes = primitive.at("attributes");
+  attributes.at("POSITION");
+  FilePoints file;
+  file.place = printable(file_->path() + ": " + primitive.where());
+  file.positions = attribute(attributes, "POSITION", {3}, quantised_ ? Integers::any : Integers::none, 0);
+  const std::size_t count = file.positions->count;
+  file.radii = attribute(attributes, "_RADIUS", {1}, Integers::normalised, count);
+  file.colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::normalised, count);
+  if (const std::optional<JsonView> reference = primitive.find("indices")) {
+    const auto indices = std::make_shared<const Indices>(placeIndices(*file_, *reference));
+    for (std::size_t i = 0; i < indices->count; ++i) {
+      if (i % 16384 == 0) {
+        indices->settle();
+        indices->announce(i, std::min(i + 16384, indices->count) - 1);
+      }
+      if (indices->at(i) >= count)
+        reference->refuse(fmt::format("hold {}; expected indices below {}, the vertex count", indices->at(i), count));
+    }
+    file.indices = indices;
+  }
+  charge(3 * file.count(), primitive);
+  if (!file.radii) ++withoutRadius_;
+  Primitive result;
+  result.points = true;
+  result.streamed = particlesOf(std::move(file), pointFaults_);
+  if (result.triangles() == 0) return std::nullopt;
+  return result;
+}
+
 Primitive PrimitiveReader::decoded(const FileTriangles& triangles) {
   if (compact_.size() < triangles.positions->count) compact_.resize(triangles.positions->count, kUnused);
   std::vector<std::uint32_t> used;
@@ -174,7 +208,11 @@ void PrimitiveReader::noteCounts() {
     if (count > 0) notes_->add(fmt::format("{} {}", count, what));
     count = 0;
   };
-  note(points_, "primitives are points or lines and are not drawn");
+  note(lines_, "primitives are lines and are not drawn");
+  note(withoutRadius_, "point primitives have no _RADIUS; their particles get 0.05 times their scale");
+  note(pointFaults_.nonFinite, "points have a position that is not finite and are left out");
+  note(pointFaults_.noRadius, "points have a radius that is not above 0 and are left out");
+  note(pointFaults_.repairedColours, "colour values of points are out of range and are clamped");
   note(unfinished_, "triangle lists end in the middle of a triangle, which is left out");
   note(faults_.nonFinite, "triangles have a position that is not finite and are left out");
   note(faults_.degenerate, "triangles have no area and are left out");
@@ -184,6 +222,7 @@ void PrimitiveReader::noteCounts() {
 }
 
 Primitive withFlippedWinding(Primitive primitive) {
+  if (primitive.points) return primitive;  // the vertex stage turns them to the camera
   if (primitive.streamed) primitive.streamed = mirroredTriangles(primitive.streamed);
   for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
     std::swap(primitive.indices[t + 1], primitive.indices[t + 2]);

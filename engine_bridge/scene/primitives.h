@@ -11,6 +11,7 @@
 #include "engine_bridge/scene/draco.h"
 #include "engine_bridge/scene/file_triangles.h"
 #include "engine_bridge/scene/gltf_file.h"
+#include "engine_bridge/scene/points.h"
 #include "engine_bridge/scene/pose.h"
 #include "engine_bridge/scene/scene.h"
 
@@ -23,7 +24,7 @@ class PrimitiveReader {
   //   stream  leave triangles where they are: Primitive::streamed
   PrimitiveReader(GltfFile& file, Notes& notes, bool stream);
 
-  // Empty when the primitive has no triangle to draw (points, lines, all degenerate), which is noted.
+  // Empty when the primitive has no triangle to draw (lines, all degenerate), which is noted.
   // Throws InputError (damaged accessors, index out of range, absurd growth).
   //   primitive  meshes[i].primitives[j]; its material is left to the caller
   //   decode     even when streaming
@@ -36,6 +37,7 @@ class PrimitiveReader {
   using Shared = std::shared_ptr<const Elements>;
   Shared attribute(const JsonView& attributes, const char* name, std::initializer_list<std::size_t> widths,
                    Integers integers, std::size_t vertexCount);
+  std::optional<Primitive> points(const JsonView& primitive, const Pose& pose);
   void readCorners(const JsonView& primitive, FileTriangles& triangles);
   Primitive decoded(const FileTriangles& triangles);
   void charge(std::size_t elements, const JsonView& user);
@@ -55,7 +57,8 @@ class PrimitiveReader {
   std::vector<std::uint32_t> compact_;   // vertex in the file to vertex kept; kUnused outside read()
   std::size_t charged_ = 0;              // elements decoded and made
   Faults faults_;
-  std::size_t points_ = 0, unfinished_ = 0, unbound_ = 0;
+  PointFaults pointFaults_;
+  std::size_t lines_ = 0, withoutRadius_ = 0, unfinished_ = 0, unbound_ = 0;
 };
 
 // The same triangles seen from the other side: for instances whose transform mirrors.

@@ -68,6 +68,10 @@ struct Material {
   std::optional<float> coverage;     // [0,1], multiplies alpha
   bool additive = false, lowResolution = false, castsShadow = true;
   std::optional<bool> thin;  // overrides `volume`
+  bool billboard = false;    // each instance is turned to the camera, and lit as a particle is
+  float softness = 0.0f;     // metres over which a billboard fades before what is opaque; 0: it is cut
+  float phase = 0.0f;        // g of particles, -0.98 to 0.98
+  float pointScale = 1.0f;   // multiplies the radius of points
 
   // All of them, in the order of their places in MaterialBlock.
   std::array<const TextureRef*, 8> textures() const {
@@ -98,6 +102,7 @@ struct Primitive {
   int material = 0;                    // index into Scene::materials
   // When set, the triangles lie in their file, and vertices and indices are empty. SceneOptions::streamBytes
   std::shared_ptr<const TriangleSource> streamed = nullptr;
+  bool points = false;  // each triangle is a particle: see scene/points.h. Always streamed
 
   std::size_t triangles() const;
 };

@@ -98,6 +98,25 @@ void Glb::addMesh(const std::string& node, const Mesh& mesh, int material, glm::
   addNode({{"name", node}, {"mesh", json_["meshes"].size() - 1}, {"translation", list(position)}});
 }
 
+void Glb::addPoints(const std::string& node, const Points& points, int material) {
+  const auto attribute = [&](const auto& values, const char* type) {
+    return addAccessor(addView(values.data(), values.size() * sizeof(values[0]), kArrayBuffer), kFloat, values.size(),
+                       type);
+  };
+  glm::vec3 low = points.positions.front(), high = low;
+  for (const glm::vec3& p : points.positions) low = glm::min(low, p), high = glm::max(high, p);
+  json attributes;
+  const int positions = attribute(points.positions, "VEC3");
+  json_["accessors"][static_cast<std::size_t>(positions)]["min"] = {low.x, low.y, low.z};
+  json_["accessors"][static_cast<std::size_t>(positions)]["max"] = {high.x, high.y, high.z};
+  attributes["POSITION"] = positions;
+  attributes["_RADIUS"] = attribute(points.radii, "SCALAR");
+  if (!points.colours.empty()) attributes["COLOR_0"] = attribute(points.colours, "VEC4");
+  const json primitive = {{"attributes", attributes}, {"mode", 0}, {"material", material}};
+  json_["meshes"].push_back({{"name", node}, {"primitives", json::array({primitive})}});
+  addNode({{"name", node}, {"mesh", json_["meshes"].size() - 1}});
+}
+
 void Glb::addCamera(const std::string& node, const View& view) {
   const Camera camera = view.camera();
   json_["cameras"].push_back({{"name", node},

@@ -1,4 +1,4 @@
-// pellucid_samples OUTDIR [NAME|all [HEIGHT]] [--hairs N]: writes OUTDIR/NAME.exr and OUTDIR/NAME.glb, HEIGHT pixels
+// pellucid_samples OUTDIR [NAME|all [HEIGHT]] [--hairs N | --particles N]: writes OUTDIR/NAME.exr and OUTDIR/NAME.glb, HEIGHT pixels
 // high.
 #include <charconv>
 #include <cstdio>
@@ -24,8 +24,19 @@ View resized(View view, int height) {
   return view;
 }
 
-void write(const Entry& entry, const std::string& folder, int height, std::uint32_t hairs) {
-  const Sample sample = hairs && entry.make == hair ? fineHair(hairs) : entry.make();
+// How many hairs or particles, where it is asked for; 0 leaves a sample as it is.
+struct Counts {
+  std::uint32_t hairs = 0, particles = 0;
+};
+
+Sample made(const Entry& entry, Counts counts) {
+  if (counts.hairs && entry.make == hair) return fineHair(counts.hairs);
+  if (counts.particles && entry.make == smokeball) return smokeBall(counts.particles);
+  return entry.make();
+}
+
+void write(const Entry& entry, const std::string& folder, int height, Counts counts) {
+  const Sample sample = made(entry, counts);
   const View view = resized(sample.view, height);
   const std::string stem = folder + "/" + entry.name;
   writeOpaque(stem + ".exr", render(sample.studio, view), view);
@@ -49,24 +60,30 @@ int numberOf(const char* text, const std::string& what, int most) {
 
 void run(int count, char** arguments) {
   constexpr int kTallest = 4320, kMostHairs = 150000;  // more do not fit into one GLB
-  int hairs = 0;
+  constexpr int kMostParticles = 100000000;
+  Counts counts;
   if (count > 3 && std::string(arguments[count - 2]) == "--hairs") {
-    hairs = numberOf(arguments[count - 1], "--hairs", kMostHairs);
+    counts.hairs = static_cast<std::uint32_t>(numberOf(arguments[count - 1], "--hairs", kMostHairs));
+    count -= 2;
+  } else if (count > 3 && std::string(arguments[count - 2]) == "--particles") {
+    counts.particles = static_cast<std::uint32_t>(numberOf(arguments[count - 1], "--particles", kMostParticles));
     count -= 2;
   }
   if (count < 2 || count > 4)
-    throw UsageError("expected OUTDIR [NAME|all [HEIGHT]] [--hairs N], NAME one of " + names());
+    throw UsageError("expected OUTDIR [NAME|all [HEIGHT]] [--hairs N | --particles N], NAME one of " + names());
   const std::string folder = arguments[1], wanted = count > 2 ? arguments[2] : "all";
   const int height = count > 3 ? numberOf(arguments[3], "HEIGHT", kTallest) : 0;
   bool known = wanted == "all";
   for (const Entry& entry : kSamples) known = known || wanted == entry.name;
   if (!known) throw UsageError("no sample named '" + wanted + "'; expected one of " + names() + ", or all");
-  if (hairs && wanted != "hair" && wanted != "all") throw UsageError("--hairs: the sample " + wanted + " has none");
+  if (counts.hairs && wanted != "hair" && wanted != "all") throw UsageError("--hairs: the sample " + wanted + " has none");
+  if (counts.particles && wanted != "smokeball" && wanted != "all")
+    throw UsageError("--particles: the sample " + wanted + " has none");
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) throw ResourceError(folder + ": no such folder could be made: " + failure.message());
   for (const Entry& entry : kSamples)
-    if (wanted == "all" || wanted == entry.name) write(entry, folder, height, static_cast<std::uint32_t>(hairs));
+    if (wanted == "all" || wanted == entry.name) write(entry, folder, height, counts);
 }
 
 }  // namespace

@@ -25,6 +25,9 @@ Sample hair();
 Sample cad();
 Sample clouds();
 Sample fineHair(std::uint32_t hairs);  // the sample `hair` with --hairs: 480 triangles each
+Sample smokeball();
+Sample smokeBall(std::uint32_t particles);  // the sample `smokeball` with --particles
+Sample shafts();
 Sample street();
 Sample mixed();
 
@@ -35,6 +38,7 @@ struct Entry {
 inline const std::vector<Entry> kSamples = {{"bars", bars},       {"bottles", bottles}, {"smoke", smoke},
                                             {"foliage", foliage}, {"frosted", frosted}, {"ball", ball},
                                             {"hair", hair},       {"cad", cad},         {"clouds", clouds},
-                                            {"street", street},   {"mixed", mixed}};
+                                            {"street", street},   {"mixed", mixed},
+                                            {"smokeball", smokeball}, {"shafts", shafts}};
 
 }  // namespace pellucid::samples

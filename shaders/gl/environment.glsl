@@ -12,6 +12,17 @@ vec4 atlasAt(AtlasTaps taps) {
          taps.weights.w * texelFetch(surroundingsAtlas, taps.d, 0);
 }
 
+// Mean over all directions: of the diffuse level, along the axes, which leaves out its second order too.
+vec3 environmentMean() {
+  vec3 sum = vec3(0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    vec3 along = vec3(axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f);
+    sum += atlasAt(directionTaps(along, PLD_DIFFUSE_LEVEL, atlasEdge)).rgb;
+    sum += atlasAt(directionTaps(-along, PLD_DIFFUSE_LEVEL, atlasEdge)).rgb;
+  }
+  return sum / 6.0f;
+}
+
 //   normal, toEye  view space, unit
 vec3 environmentReflected(Surface surface, vec3 normal, vec3 toEye, float cosEye) {
   GlossyLevels levels = glossyLevels(surface.roughness);

@@ -15,8 +15,6 @@ layout(std140, binding = 2) uniform FogValues {
 };
 
 layout(binding = 12) uniform sampler3D densityGrid;
-layout(binding = 13) uniform sampler3D lightVolume;  // lights above one another
-
 #define gridSize gridTexels.xyz
 #define hasVisibility (volumeTexels.w != 0)
 #define lightsOfFog gridTexels.w
@@ -25,10 +23,8 @@ float densityTexel(ivec3 texel) {
   return texelFetch(densityGrid, clamp(texel, ivec3(0), gridTexels.xyz - 1), 0).r;
 }
 
-vec3 visibilityTexel(int light, ivec3 texel) {
-  ivec3 inside = clamp(texel, ivec3(0), volumeTexels.xyz - 1);
-  return texelFetch(lightVolume, inside + ivec3(0, 0, light * volumeTexels.z), 0).rgb;
-}
+#define LIGHT_VOLUME_TEXELS volumeTexels.xyz
+#include "gl/light_volume.glsl"
 
 PunctualLight lightNumber(int light) { return lights[light]; }
 

@@ -17,6 +17,8 @@ layout(std140, binding = 0) uniform Frame {
   int atlasEdge;         // of the surroundings' level 0, texels
   float footprint;       // edge of what one sample stands for, pixels
   ivec2 origin;          // of the pass's pixel 0, 0 in the data window
+  mat4 volumeOfParticles;  // view space to texels of the light volume, centres at +0.5
+  ivec4 texelsOfParticles; // of one light
 };
 
 // Row 0 is the top row: the pass sets the clip origin to the upper left.

@@ -15,6 +15,7 @@ layout(std140, binding = 1) uniform MaterialValues {
   vec4 uvTransforms[16];    // per texture two rows (a, b, c) with uv' = row * (uv, 1); .w of the first: TEXCOORD set
   vec4 scattering;          // collimation, < 0: from roughness; diffuse transmission; eta; thickness, object space
   vec4 dispersion;          // eta of red, of blue
+  vec4 particle;            // softness, metres; g of its phase function
 } material;
 
 layout(binding = 0) uniform sampler2D baseTexture;

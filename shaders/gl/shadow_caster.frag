@@ -4,6 +4,9 @@
 #include "gl/exact_cut.glsl"
 #include "gl/shadow_frame.glsl"
 #include "shared/shadow_map.glsl"
+#ifdef POINTS
+#include "shared/particle.glsl"
+#endif
 layout(location = 4) flat in uint triangleNumber;  // within the primitive
 uniform uint instanceIdentity;
 
@@ -15,6 +18,11 @@ layout(location = 1) out vec4 steps;    // adds
 void main() {
   Surface surface = surfaceHere();
   if (outsideTriangle()) discard;
+#ifdef POINTS
+  float square = dot(textureUv.xy, textureUv.xy);
+  if (square >= 1.0f) discard;
+  surface.coverage = ballCoverage(surface.coverage, sqrt(1.0f - square));
+#endif
   if (!(-viewPosition.z > 0.0f) || !(surface.coverage > 0.0f)) discard;
   float depth = mapDepthOf(viewPosition);
   ivec2 texel = ivec2(gl_FragCoord.xy);

@@ -8,6 +8,9 @@
 #include "gl/environment.glsl"
 #endif
 #include "gl/occlusion.glsl"
+#if defined(POINTS) || defined(PARTICLE) || defined(SOFT)
+#include "gl/particle.glsl"
+#endif
 #include "gl/scatter.glsl"
 #ifdef PROBES
 #include "shared/probe.glsl"
@@ -38,6 +41,15 @@ void main() {
   if (!isProbe(origin + pixel, band.w)) discard;
 #endif
   if (outsideTriangle()) discard;
+#ifdef POINTS
+  float square = dot(textureUv.xy, textureUv.xy);
+  if (square >= 1.0f || !(z > 0.0f)) discard;
+  Chord chord = chordOf(square, z, textureUv.z * pointScale, depthBehind(pixel));
+  surface.coverage = ballCoverage(surface.coverage, chord.share);
+  z = chord.z;
+#elif defined(SOFT)
+  surface.coverage *= cardShare(z, depthBehind(pixel), material.particle.x);
+#endif
   if (!(z > 0.0f) || !(surface.coverage > 0.0f)) discard;
   if (z > texelFetch(opaqueZ, pixel, 0).r * depthFactor) discard;
 
@@ -45,6 +57,16 @@ void main() {
   vec3 reflected = vec3(0.0f);
 #ifdef UNLIT
   reflected = surface.baseColor;
+#elif defined(PARTICLE)
+  vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
+  vec3 around = vec3(0.0f);
+#ifdef SURROUNDINGS
+  around = surroundings.rgb;
+#endif
+#ifdef ENVIRONMENT
+  around += environmentMean();
+#endif
+  reflected = scatteredByParticle(surface.baseColor, around, toEye);
 #else
   vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
   vec3 normal = normalHere(toEye);

@@ -4,6 +4,9 @@
 #include "gl/vertex_input.glsl"
 uniform mat4 viewFromObject;
 uniform mat3 normalFromObject;
+#ifdef POINTS
+uniform float pointScale;  // metres per unit of their radius
+#endif
 
 layout(location = 0) out vec3 viewPosition;
 layout(location = 1) out vec3 viewNormal;
@@ -14,9 +17,18 @@ layout(location = 7) out vec4 viewTangent;
 #endif
 invariant gl_Position;
 
-vec4 clipOf(vec3 pObject) {
+//   at  corner of a particle's disc, in radii; and its radius
+vec3 viewOf(vec3 pObject, vec4 at) {
   precise vec4 pView = viewFromObject * vec4(pObject, 1.0f);
-  precise vec4 clip = clipFromView * vec4(pView.xyz, 1.0f);
+#ifdef POINTS
+  precise vec2 aside = at.xy * (at.z * pointScale);
+  pView.xy += aside;
+#endif
+  return pView.xyz;
+}
+
+vec4 clipOf(vec3 pView) {
+  precise vec4 clip = clipFromView * vec4(pView, 1.0f);
   return clip;
 }
 
@@ -31,7 +43,7 @@ vec3 grownCorner(int first, int corner) {
   float w[3];
   bool resolved = true;
   for (int k = 0; k < 3; ++k) {
-    vec4 clip = clipOf(positionAt(first + k));
+    vec4 clip = clipOf(viewOf(positionAt(first + k), uvAt(first + k)));
     w[k] = clip.w;
     precise vec2 ndc = clip.xy / clip.w;
     precise vec2 pixels = (vec2(ndc.x, -ndc.y) * 0.5f + 0.5f) * viewport;
@@ -67,8 +79,7 @@ void main() {
   int corner = gl_VertexID % 3;
   fetchVertex(gl_VertexID - corner, grownCorner(gl_VertexID - corner, corner));
 #endif
-  precise vec4 pView = viewFromObject * vec4(position, 1.0f);
-  viewPosition = pView.xyz;
+  viewPosition = viewOf(position, uv);
   viewNormal = normalFromObject * normal;
   textureUv = uv;
   vertexColour = colour;
@@ -78,5 +89,5 @@ void main() {
 #endif
   viewTangent = vec4(mat3(viewFromObject) * tangent.xyz, tangent.w);
 #endif
-  gl_Position = clipOf(position);
+  gl_Position = clipOf(viewPosition);
 }

@@ -22,6 +22,11 @@ vec4 uv, colour, tangent;
 
 vec3 positionAt(int corner) { return vertices[indices[corner]].positionNormalX.xyz; }
 
+vec4 uvAt(int corner) {
+  PulledVertex v = vertices[indices[corner]];
+  return vec4(v.normalYzUv0.zw, v.uv1ColourRg.xy);
+}
+
 // The vertex that lies at weights `share` (sum 1) of the triangle whose first corner is `first`.
 void fetchVertex(int first, vec3 share) {
   position = vec3(0.0f);

@@ -182,14 +182,15 @@ TEST(Geometry, NormalisedIntegersAndBothColourWidths) {
   EXPECT_TRUE(noted(clamped, "1 vertex colours or texture coordinates are out of range"));
 }
 
-TEST(Geometry, PointsAndLinesAreNotedAndSkipped) {
+TEST(Geometry, OpaquePointsAndLinesAreNotedAndSkipped) {
   Builder builder;
   builder.triangle()["mode"] = 0;
   builder.triangle()["mode"] = 3;
   builder.triangle();
   const Scene scene = builder.load();
   EXPECT_EQ(scene.instances.size(), 1u);
-  EXPECT_TRUE(noted(scene, "2 primitives are points or lines"));
+  EXPECT_TRUE(noted(scene, "1 primitives are lines"));
+  EXPECT_TRUE(noted(scene, "its points are opaque"));
 }
 
 TEST(Geometry, OnlyVerticesThatTrianglesUseAreKept) {

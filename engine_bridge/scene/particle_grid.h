@@ -1,0 +1,18 @@
+// Particles as a medium: how dense they make the air, for the shadows that they cast on each other and on what is there.
+#pragma once
+#include <memory>
+
+#include "gbuffer/medium.h"
+#include "engine_bridge/scene/scene.h"
+
+namespace pellucid {
+
+// 1/m, in cubes as near as whole numbers go, `longest` of them along the longest edge of what the particles fill: the mass
+// of a ball of even density, or of a card's, spread over the cubes that it reaches. Points and billboards that cast
+// shadows; null without any. The same bits whatever the order of a scene's chunks and threads.
+std::shared_ptr<const DensityGrid> particleGrid(const Scene& scene, int longest);
+
+// The grid as fog that nobody sees: for gridDepth() and sampleLights().
+Fog particleFog(std::shared_ptr<const DensityGrid> grid, const Camera& camera, std::vector<shading::PunctualLight> lights);
+
+}  // namespace pellucid
