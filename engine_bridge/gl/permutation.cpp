@@ -39,7 +39,7 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("REFRACTION_TEXTURE", bends && material.thicknessTexture.texture >= 0);
   define("DISPERSES", bends && frame.disperses && (disperses(material) || !frame.prune));
   define("DIFFUSES", frame.diffuses && (diffuses(material) || !frame.prune));
-  const bool occluded = frame.occludes && infers;
+  const bool occluded = frame.occludes && infers && !particle;
   define("OCCLUDED", occluded);
   if (occluded && frame.rimForm >= 0) defines.push_back("RIM_FORM " + std::to_string(frame.rimForm));
   return defines;

@@ -75,12 +75,13 @@ TEST(Particle, EveryKindCompilesAndLinks) {
     const std::vector<std::string> surface = gl::surfaceDefines(material, bit(5), frame, false, points);
     defines.insert(defines.end(), surface.begin(), surface.end());
     ASSERT_NO_THROW(gl::buildProgram("gl/transparent.vert", "gl/transparent.frag", defines)) << bits;
-    if (points || material.billboard)
+    if (points || material.billboard) {
       ASSERT_NO_THROW(gl::buildProgram("gl/transparent.vert", "gl/shadow_caster.frag", [&] {
         std::vector<std::string> caster = surface;
         caster.emplace_back("EXACT_COVERAGE");
         return caster;
       }())) << bits;
+    }
   }
 }
 
