@@ -109,11 +109,23 @@ void composite(const CompositeFlags& flags) {
     settings.pass.particleLight = flags.particles.place(*shot, air, stages);
   }
 
+  settings.pass.shadows = shadows.maps;
+
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
     device();
     stages.time("upload",
                 [&] { pass = std::make_unique<TransparentPass>(*context, shot->scene, gbuffer, shot->camera); });
+  }
+  std::optional<StochasticPass> sampler;
+  if (settings.stochastic && flags.stochastic.onDevice()) {
+    if (!shot->hasScene || !shot->deep.empty())
+      throw UsageError("--sampled-on: found gl with deep EXR, expected cpu: its samples are no triangles");
+    if (settings.pass.fog) throw UsageError("--sampled-on: found gl with --fog, expected cpu: fog is no triangle");
+    settings.sampler = &sampler.emplace(device(), shot->scene, gbuffer, shot->camera);
+    if (sampler->scatters(settings.pass))
+      throw UsageError(
+          "--sampled-on: found gl, and materials that refract or diffuse, expected cpu, or --refract off --diffusion off");
   }
   std::vector<SystemPass> systems;
   if (flags.systems != "off") {
@@ -152,6 +164,7 @@ void composite(const CompositeFlags& flags) {
     truth.listMethod.reset();
     truth.tolerance.reset();
     truth.systems = nullptr;
+    truth.sampler = nullptr;
     truth.device = nullptr;
     RenderCounts truthCounts;
     Stages truthStages;

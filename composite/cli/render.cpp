@@ -156,6 +156,27 @@ std::string weightFlags(const shading::WeightSettings& weight) {
   return fmt::format("--weight {} --weight-range {}:{}", name, weight.rangeNear, weight.rangeFar);
 }
 
+// One pass of samples drawn on the device.
+Veil sampleOnDevice(const RenderSettings& settings, const PassSettings& sample, int pass, const GBuffer& gbuffer,
+                    StochasticMean& mean, PassStatistics& statistics) {
+  const StochasticSettings& chosen = *settings.stochastic;
+  StochasticPassSettings samples;
+  samples.samples = chosen.samples;
+  samples.first = pass;
+  samples.step = settings.samples;
+  samples.stratified = chosen.stratified;
+  samples.winnersOnly = chosen.variant != StochasticSettings::Variant::depth;
+  samples.seed = chosen.seed;
+  Veil veil(gbuffer.data.width(), gbuffer.data.height());
+  mean.add(settings.sampler->sample(sample, samples), veil);
+  const StochasticPassStatistics& done = settings.sampler->statistics();
+  statistics.fragments = done.fragments;
+  statistics.tiles = done.bands;
+  statistics.passes = done.passes;
+  statistics.bitsPerPixel = stochasticBits(chosen);
+  return veil;
+}
+
 }  // namespace
 
 void useMethod(const std::optional<ChosenMethod>& chosen, RenderSettings& settings) {
@@ -197,6 +218,11 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
         return veilFromSystems(*pass, *settings.systems, settings, sample, gbuffer, counts);
       });
       statistics = pass->statistics();
+      stages.time("average", [&] { mean.add(veil); });
+    } else if (stochastic && settings.sampler) {
+      const Veil veil = stages.time("sample", [&] {
+        return sampleOnDevice(settings, sample, i, gbuffer, *stochastic, statistics);
+      });
       stages.time("average", [&] { mean.add(veil); });
     } else if (settings.sortedTruth || settings.listMethod || stochastic || settings.tolerance || settings.exactSums ||
                settings.deepOpaque || !deep.empty() || !pass) {

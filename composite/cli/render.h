@@ -7,6 +7,7 @@
 #include "composite/methods/stochastic.h"
 #include "composite/resolve.h"
 #include "composite/tolerance.h"
+#include "engine_bridge/gl/stochastic_pass.h"
 
 namespace pellucid::cli {
 
@@ -25,6 +26,7 @@ struct RenderSettings {
   const DeepOpaque* deepOpaque = nullptr;        // the picture, when it is deep
   std::vector<SystemPass>* systems = nullptr;    // each its own pass, farthest first
   std::optional<StochasticSettings> stochastic;  // from lists too; its samples are spread over all the passes
+  StochasticPass* sampler = nullptr;             // --sampled-on gl; null: the CPU samples lists
   std::optional<double> tolerance;               // certify the sums, composite exactly what they cannot
 };
 

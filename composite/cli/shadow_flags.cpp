@@ -8,16 +8,20 @@
 #include <optional>
 
 #include "composite/cli/particle_flags.h"
+#include "composite/shadow_views.h"
 #include "composite/shadows.h"
 #include "engine_bridge/embree/shadow_rays.h"
 #include "engine_bridge/gl/shadow_pass.h"
 #include "engine_bridge/scene/blocks.h"
+#include "engine_bridge/scene/opaque_planes.h"
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/view_point.h"
 
 namespace pellucid::cli {
 namespace {
+
+constexpr int kOpaqueSize = 2048;  // texels along an edge of the maps that shadow transparent things
 
 std::pair<std::string, std::string> nameAndLayer(const std::string& text) {
   const auto equals = text.find('=');
@@ -91,6 +95,7 @@ std::shared_ptr<const ShadowMaps> drawMaps(const ShadowFlags& flags, const Shot&
   ShadowMapSettings settings;
   settings.form = formOf(flags.shadows);
   settings.size = flags.size;
+  settings.opaqueSize = std::min(flags.size, kOpaqueSize);
   settings.seed = seed;
   ShadowMapStatistics statistics;
   auto maps = std::make_shared<const ShadowMaps>(
@@ -98,6 +103,16 @@ std::shared_ptr<const ShadowMaps> drawMaps(const ShadowFlags& flags, const Shot&
   spdlog::info("shadow maps: {} faces, {} MiB, drawn in {:.2f} s, filtered in {:.2f} s", statistics.faces,
                statistics.bytes >> 20, statistics.drawSeconds, statistics.filterSeconds);
   return maps;
+}
+
+void writeViews(const std::string& path, const ShadowMaps& maps, const std::vector<Light>& lights) {
+  const std::vector<std::string> shining = lightLayerNames(lights);
+  std::vector<std::string> names;
+  std::size_t next = 0;
+  for (const Light& light : lights) names.push_back(shines(light) ? shining[next++] : std::string());
+  const ShadowViews views = shadowViews(maps, names);
+  if (views.layers.empty()) throw MeaningError("--shadow-views: found nothing that casts into a map, expected a caster");
+  say(writeLayers(path, views.window, views.window, views.layers));
 }
 
 ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
@@ -115,7 +130,7 @@ ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
 void ShadowFlags::addTo(CLI::App& verb) {
   verb.add_option("--shadows", shadows,
                   "Shadows of transparent things on the opaque picture, from the glTF's punctual lights; exact: by rays; "
-                  "stochastic: by prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
+                  "stochastic: by prefiltered maps, and on transparent things too; stochastic:published as printed; stochastic:naive, stratified, "
                   "corrected: maps without a filter, percentage closer")
       ->check(CLI::IsMember({"off", "exact", "stochastic", "stochastic:published", "stochastic:naive",
                              "stochastic:stratified", "stochastic:corrected"}))
@@ -130,6 +145,9 @@ void ShadowFlags::addTo(CLI::App& verb) {
       ->allow_extra_args(false);
   verb.add_flag("--apply-shadows", apply,
                 "Without such layers: multiply the beauty by the layer `shadow`, which is otherwise only written");
+  verb.add_option("--shadow-views", views,
+                  "Of --shadows stochastic: EXR to write what the maps hold to, for each light the casters' depth and what "
+                  "they hide; of stochastic:naive texel by texel");
 }
 
 void ShadowFlags::check() const {
@@ -139,6 +157,8 @@ void ShadowFlags::check() const {
         fmt::format("{}: found it without --shadows, expected --shadows exact", apply ? "--apply-shadows" : "--light"));
   if (sizeOption_ && sizeOption_->count() > 0 && !mapped())
     throw UsageError(fmt::format("--shadow-size: --shadows {} draws no maps, expected stochastic", shadows));
+  if (!views.empty() && !mapped())
+    throw UsageError(fmt::format("--shadow-views: --shadows {} draws no maps, expected stochastic", shadows));
   if (size % 128 != 0) throw UsageError(fmt::format("--shadow-size: found {}, expected a multiple of 128", size));
 }
 
@@ -172,6 +192,7 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std:
   else
     result.maps = drawMaps(flags, shot, seed, device());
   if (rays) particles.emplace(shot);
+  if (!flags.views.empty()) writeViews(flags.views, *result.maps, shot.scene.lights);
   std::vector<Image<glm::vec3>> visibility, layers;
   std::vector<std::size_t> without;
   for (const std::size_t i : lit) {

@@ -17,6 +17,7 @@ struct ShadowFlags {
   std::vector<std::string> lights;
   bool apply = false;
   int size = 4096;
+  std::string views;  // file, or ""
   void addTo(CLI::App& verb);
   bool on() const { return shadows != "off"; }
   bool exact() const { return shadows == "exact"; }

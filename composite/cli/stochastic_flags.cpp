@@ -39,13 +39,18 @@ void StochasticFlags::addTo(CLI::App& verb) {
                                       "Of --method stochastic:depth: scale to the exact net opacity; off is unbiased")
                           ->check(CLI::IsMember({"on", "off"}))
                           ->capture_default_str();
+  sampledOption_ = verb.add_option("--sampled-on", sampledOn,
+                                   "Of --method stochastic: the CPU samples lists of every fragment, gl draws the samples "
+                                   "in two passes, three but for stochastic:depth; the same picture but for rounding")
+                       ->check(CLI::IsMember({"cpu", "gl"}))
+                       ->capture_default_str();
 }
 
 std::optional<StochasticSettings> StochasticFlags::settings(const std::string& method, int passes,
                                                             bool shadows) const {
   const std::optional<Variant> variant = stochasticVariant(method);
   if (!variant) {
-    for (const CLI::Option* option : {samplesOption_, seedOption_, masksOption_, correctionOption_})
+    for (const CLI::Option* option : {samplesOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
       if (option && option->count() > 0 && !(shadows && option == seedOption_))
         throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(), method,
                                      kStochasticNames));

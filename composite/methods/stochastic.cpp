@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 
 namespace pellucid {
 namespace {
@@ -88,17 +87,6 @@ int stochasticPasses(const StochasticSettings& settings) {
   return 1 + (corrected ? 1 : 0) + (settings.variant == Variant::depth ? 1 : 0);
 }
 
-MaskTable::MaskTable(int samples) : samples_(static_cast<std::uint32_t>(samples)), ranks_(kRows * samples_) {
-  for (std::uint32_t row = 0; row < kRows; ++row) {
-    const auto begin = ranks_.begin() + static_cast<std::ptrdiff_t>(row * samples_);
-    std::iota(begin, begin + static_cast<std::ptrdiff_t>(samples_), std::uint16_t{0});
-    for (std::uint32_t left = samples_; left > 1; --left) {  // Fisher-Yates
-      const std::uint64_t draw = shading::hashOf(shading::hashOf(row) + left);
-      std::swap(begin[static_cast<std::ptrdiff_t>(left - 1)], begin[static_cast<std::ptrdiff_t>(draw * left >> 32)]);
-    }
-  }
-}
-
 StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
                            const MaskTable& masks, const StochasticShare& share) {
   StochasticSums sums;
@@ -156,11 +144,26 @@ StochasticMean::StochasticMean(int width, int height, const StochasticSettings& 
       added_(light_),
       hidden_(light_) {}
 
+bool StochasticMean::exactBackground() const {
+  return settings_.variant == Variant::alpha || (settings_.variant == Variant::depth && settings_.corrected);
+}
+
+void StochasticMean::put(int x, int y, const StochasticSums& sums, const glm::vec4& solid, float frontZ, Veil& veil) {
+  const auto share = static_cast<float>(1.0 / passes_);
+  const bool hasSolid = std::isfinite(solid.a);
+  light_.at(x, y) += share * glm::vec3(sums.light);
+  unit_.at(x, y) += share * glm::vec3(sums.unit);
+  added_.at(x, y) += share * glm::vec3(sums.added);
+  hidden_.at(x, y) += share * glm::vec3(dvec3(1.0) - sums.beta);
+  const glm::vec3 shows = glm::vec3(exactBackground() ? sums.beta : sums.empty);
+  veil.light.at(x, y) = hasSolid ? shows * glm::vec3(solid) : glm::vec3(0.0f);
+  veil.transmission.at(x, y) = hasSolid ? glm::vec3(0.0f) : shows;
+  veil.frontZ.at(x, y) = std::min(frontZ, solid.a);
+  veil.touched.at(x, y) = 1;
+}
+
 void StochasticMean::add(int pass, const FragmentLists& lists, const Window& data, Veil& veil) {
   const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
-  const bool exactBackground =
-      settings_.variant == Variant::alpha || (settings_.variant == Variant::depth && settings_.corrected);
-  const auto share = static_cast<float>(1.0 / passes_);
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     std::vector<MethodLayer> layers;
     for (int y = rows.begin(); y != rows.end(); ++y)
@@ -168,23 +171,29 @@ void StochasticMean::add(int pass, const FragmentLists& lists, const Window& dat
         const auto pixel =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
         const glm::vec4 solid = lists.solid.at(x, y);
-        const bool hasSolid = std::isfinite(solid.a);
         layersOf(lists, pixel, solid.a, layers);
-        if (layers.empty() && !hasSolid) continue;
+        if (layers.empty() && !std::isfinite(solid.a)) continue;
         const StochasticSums sums =
             samplePixel(layers, {lists.window.x0 + x, lists.window.y0 + y}, settings_, *masks_, {pass, passes_});
-        const int u = left + x, v = top + y;
-        light_.at(u, v) += share * glm::vec3(sums.light);
-        unit_.at(u, v) += share * glm::vec3(sums.unit);
-        added_.at(u, v) += share * glm::vec3(sums.added);
-        hidden_.at(u, v) += share * glm::vec3(dvec3(1.0) - sums.beta);
-        const glm::vec3 shows = glm::vec3(exactBackground ? sums.beta : sums.empty);
-        veil.light.at(u, v) = hasSolid ? shows * glm::vec3(solid) : glm::vec3(0.0f);
-        veil.transmission.at(u, v) = hasSolid ? glm::vec3(0.0f) : shows;
-        veil.frontZ.at(u, v) = layers.empty() ? solid.a : std::min(layers.front().record->z, solid.a);
-        veil.touched.at(u, v) = 1;
+        put(left + x, top + y, sums, solid, layers.empty() ? solid.a : layers.front().record->z, veil);
       }
   });
+}
+
+void StochasticMean::add(const StochasticPlanes& planes, Veil& veil) {
+  for (int y = 0; y < planes.data.height(); ++y)
+    for (int x = 0; x < planes.data.width(); ++x) {
+      const glm::vec4& solid = planes.solid.at(x, y);
+      const float frontZ = planes.frontZ.at(x, y);
+      if (!std::isfinite(frontZ) && !std::isfinite(solid.a)) continue;
+      StochasticSums sums;
+      sums.light = planes.light.at(x, y);
+      sums.unit = planes.unit.at(x, y);
+      sums.added = planes.added.at(x, y);
+      sums.empty = planes.empty.at(x, y);
+      sums.beta = planes.beta.at(x, y);
+      put(x, y, sums, solid, frontZ, veil);
+    }
 }
 
 void StochasticMean::finish(Veil& mean) const {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "composite/methods/method.h"
+#include "gbuffer/mask_table.h"
+#include "gbuffer/stochastic_planes.h"
 
 namespace pellucid {
 
@@ -26,24 +28,6 @@ struct StochasticSettings {
 // Of sums a pixel, as a rasteriser keeps them: a depth per sample and channel, and the planes that are divided.
 int stochasticBits(const StochasticSettings& settings);
 int stochasticPasses(const StochasticSettings& settings);  // of geometry
-
-// Random orders of S samples. A mask is a run of R ranks of one of them, so masks of different R nest.
-class MaskTable {
- public:
-  explicit MaskTable(int samples);
-  // Rank of sample s, [0, S), in the order that `key` picks. Over keys, all subsets are equally likely, but for the
-  // finite table: kRows orders, each turned by any of S offsets.
-  std::uint32_t rank(std::uint32_t key, std::uint32_t s) const {
-    const std::uint32_t bits = shading::hashOf(key ^ 0x85ebca6bu);
-    const std::uint32_t turned = s + (bits >> kRowBits) % samples_;
-    return ranks_[(bits & (kRows - 1)) * samples_ + (turned < samples_ ? turned : turned - samples_)];
-  }
-
- private:
-  static constexpr std::uint32_t kRowBits = 11, kRows = 1u << kRowBits;
-  std::uint32_t samples_;
-  std::vector<std::uint16_t> ranks_;
-};
 
 // What samples of one pixel add up to: averages over its samples, before ST10's division.
 struct StochasticSums {
@@ -76,10 +60,15 @@ class StochasticMean {
   // Adds pass `pass`. Writes transmission, solids, front depth and touched of the lists' window to `veil`, whose light
   // still lacks the layers'.
   void add(int pass, const FragmentLists& lists, const Window& data, Veil& veil);
+  // The same, sampled already.
+  void add(const StochasticPlanes& planes, Veil& veil);
   // Adds the layers' light to the mean of those veils.
   void finish(Veil& mean) const;
 
  private:
+  bool exactBackground() const;
+  void put(int x, int y, const StochasticSums& sums, const glm::vec4& solid, float frontZ, Veil& veil);
+
   StochasticSettings settings_;
   int passes_;
   std::shared_ptr<const MaskTable> masks_;

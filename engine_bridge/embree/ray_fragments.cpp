@@ -9,6 +9,7 @@
 #include "engine_bridge/embree/surface_sampler.h"
 #include "engine_bridge/embree/transparent_scene.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/shadow_maps.h"
 
 namespace pellucid {
 namespace {
@@ -36,7 +37,9 @@ struct RayFragments::Impl {
   Camera camera;
   CameraRays rays;
   TransparentScene traced;
-  std::vector<PunctualLight> lights;
+  std::vector<PunctualLight> lights;  // those that shine
+  std::vector<std::size_t> lightIndex;  // of each in the scene
+  std::shared_ptr<const ShadowRays> shadowRays;
   glm::mat3 worldFromView;
 
   Impl(const Scene& sceneGiven, const GBuffer& gbufferGiven, const Camera& cameraGiven)
@@ -46,7 +49,10 @@ struct RayFragments::Impl {
         rays(camera, gbuffer.display),
         traced(scene, camera),
         lights(lightBlocks(scene.lights, camera)),
-        worldFromView(glm::transpose(glm::dmat3(camera.viewFromWorld))) {}
+        worldFromView(glm::transpose(glm::dmat3(camera.viewFromWorld))) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+      if (shines(scene.lights[i])) lightIndex.push_back(i);
+  }
 
   Ray rayOf(int x, int y, const PassSettings& settings) const {
     return rays.through({x + settings.sample.x, y + settings.sample.y});
@@ -104,8 +110,12 @@ std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, cons
       reflected = settings.environment->reflected(surface, worldFromView * normal, worldFromView * toEye, cosEye);
     else
       reflected = shading::reflectSurroundings(surface, cosEye) * settings.surroundings;
-    for (const PunctualLight& light : lights) {
-      const shading::Arriving arriving = shading::arrivingAt(light, position);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      shading::Arriving arriving = shading::arrivingAt(lights[i], position);
+      if (shadowRays)
+        arriving.irradiance *= shadowRays->visibility(lightIndex[i], glm::dvec3(position));
+      else if (settings.shadows)
+        arriving.irradiance *= settings.shadows->visibility(lightIndex[i], position);
       reflected += shading::reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
     }
   }
@@ -154,6 +164,10 @@ void RayFragments::Impl::pixel(int column, int row, const SurfaceSampler& sample
 RayFragments::RayFragments(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
     : impl_(new Impl(scene, gbuffer, camera)) {}
 RayFragments::~RayFragments() = default;
+
+void RayFragments::shadowBy(std::shared_ptr<const ShadowRays> rays) {
+  impl_->shadowRays = std::move(rays);
+}
 
 void RayFragments::fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& band) {
   if (settings.filter == TextureFilter::mipmap)

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "engine_bridge/embree/shadow_rays.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/fragments.h"
 
@@ -14,6 +15,9 @@ class RayFragments {
   // The arguments must outlive this. Throws ResourceError when memory runs out.
   RayFragments(const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
   ~RayFragments();
+
+  // From now on these rays say what transparent things are in the way of the scene's lights, instead of settings.shadows.
+  void shadowBy(std::shared_ptr<const ShadowRays> rays);
 
   // Every transparent fragment in front of the G-buffer and of the nearest solid, in bands of rows from the top that
   // together cover the data window. Fragments of a pixel lie from the nearest to the farthest, equal depths by

@@ -13,6 +13,7 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   const bool lit = !material.unlit;
   define("UNLIT", material.unlit);
   define("LIGHTS", lit && frame.lights);
+  define("SHADOWS", lit && frame.lights && frame.shadows);
   define("SURROUNDINGS", lit && frame.surroundings);
   define("ENVIRONMENT", lit && frame.environment);
   define("VERTEX_COLOUR", vertexColours);
@@ -64,8 +65,27 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
     case Output::list:
       defines = {"OUTPUT_LIST"};
       break;
+    case Output::cover:
+    case Output::coverToWin:
+      defines = {"OUTPUT_COVER"};
+      break;
+    case Output::claim:
+      defines = {"OUTPUT_CLAIM"};
+      break;
+    case Output::add:
+    case Output::addWon:
+      defines = {"OUTPUT_ADD"};
+      break;
     case Output::solid:
       return {"OUTPUT_SOLID", "EXACT_COVERAGE"};
+  }
+  const bool winners = output == Output::coverToWin || output == Output::claim || output == Output::addWon;
+  if (winners) defines.emplace_back("WINNERS");
+  if (winners || output == Output::cover || output == Output::add) {
+    if (frame.grey) defines.emplace_back("GREY");
+    defines.emplace_back("EXACT_COVERAGE");
+    if (frame.solids) defines.emplace_back("SOLIDS");
+    return defines;  // what scatters is summed apart
   }
   defines.emplace_back("EXACT_COVERAGE");
   if (frame.solids) defines.emplace_back("SOLIDS");

@@ -14,12 +14,19 @@ enum class Output {
   solid,      // the nearest fragment that hides everything
   published,  // the targets of PT17 table 2
   rims,       // what rims of leaves get from around: gbuffer/rim_planes.h
+  // Stochastic transparency, by the share of samples that see a fragment, or by those that it won:
+  cover,       // nearest depths of the samples
+  add,         // light
+  coverToWin,  // of winners alone
+  claim,       // who owns a sample, of those at one depth
+  addWon,
 };
-constexpr std::size_t kOutputs = 6;
+constexpr std::size_t kOutputs = 11;
 
 struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;
   bool lights = false, surroundings = false;
+  bool shadows = false;                     // there are maps of what is in the lights' way
   bool environment = false;                 // the surroundings are a picture
   bool solids = false;                      // there is a solid plane to test against
   bool grey = false;                        // no material transmits colour: one opacity for all channels

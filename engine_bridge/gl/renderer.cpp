@@ -126,6 +126,7 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.probes = settings.probeCell > 1;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
+  features_.shadows = features_.lights && settings.shadows != nullptr;
   features_.environment = settings.environment != nullptr;
   features_.surroundings = !features_.environment && settings.surroundings != glm::vec3(0.0f);
   features_.lightVolume = settings.particleLight != nullptr;
@@ -227,6 +228,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
     particleLight_.bind(settings.particleLight);
   }
   uploadSurroundings();
+  if (features_.shadows) uploadShadows();
   uploadFrame();
 
   glViewport(0, 0, superTile.width(), superTile.height());
@@ -261,6 +263,12 @@ void Renderer::uploadSurroundings() {
   }
   glBindTextureUnit(kAtlasUnit, atlas_.name());
   glBindSampler(kAtlasUnit, 0);
+}
+
+void Renderer::uploadShadows() {
+  if (shadowsOf_ != settings_.shadows) shadows_.emplace(*settings_.shadows, scene_.lights);
+  shadowsOf_ = settings_.shadows;
+  shadows_->bind();
 }
 
 void Renderer::uploadFrame() {

@@ -10,6 +10,7 @@
 #include "engine_bridge/gl/permutation.h"
 #include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/scene_textures.h"
+#include "engine_bridge/gl/shadow_textures.h"
 #include "engine_bridge/gl/targets.h"
 #include "engine_bridge/gl/volume_texture.h"
 #include "engine_bridge/scene/placed.h"
@@ -73,6 +74,7 @@ class Renderer {
   const Program& programFor(int primitive, Output output);
   void uploadFrame();
   void uploadSurroundings();
+  void uploadShadows();
   void drawSolids();
   void drawChunk(const std::vector<ChunkDraw>& draws, Output output);
 
@@ -101,6 +103,8 @@ class Renderer {
   Texture opaqueZ_, atlas_, occluders_;
   VolumeTexture particleLight_;
   std::shared_ptr<const Surroundings> atlasOf_;  // what atlas_ holds
+  std::shared_ptr<const ShadowMaps> shadowsOf_;  // what shadows_ holds
+  std::optional<ShadowTextures> shadows_;
   Window opaqueZPart_, occludersPart_;
   std::shared_ptr<const OccluderPlanes> uploadedOccluders_;
 };

@@ -17,6 +17,10 @@ using Clock = std::chrono::steady_clock;
 constexpr int kBandRows = 512;     // drawn at once, so that a map of any size takes as much device memory
 constexpr double kMargin = 16.0;   // texels as drawn: the tent's reach, and the texels that a lookup blends
 constexpr double kOpaqueBias = 2.0;  // texels of opaque maps
+// A slanted sheet spreads over the tent's depths, and must not shadow itself: the reach of the slab that it seems to be,
+// at 45 degrees, in half texels as drawn; and that of a sheet without spread, sqrt(3) of the least deviation.
+constexpr double kBias = 12.0;
+constexpr float kSlabReach = 1.75e-3f;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -118,7 +122,9 @@ void MapMaker::opaqueFace(const LightView& view, const LightViews& metric) {
 
 void MapMaker::light(const Light& light, std::uint32_t seed) {
   shading::ShadowLight block{};
-  block.lookup = {filtered_ ? shading::PLD_SHADOW_PREFILTERED : shading::PLD_SHADOW_CLOSER,
+  block.lookup = {settings_.form == Form::variance    ? shading::PLD_SHADOW_SLAB
+                  : settings_.form == Form::published ? shading::PLD_SHADOW_CHEBYSHEV
+                                                      : shading::PLD_SHADOW_CLOSER,
                   settings_.form == Form::variance || settings_.form == Form::corrected ? 1 : 0, settings_.closerEdge,
                   light.kind == LightKind::directional ? 0 : 1};
   if (!shines(light)) {
@@ -158,6 +164,13 @@ void MapMaker::light(const Light& light, std::uint32_t seed) {
   block.faces[0] = static_cast<int>(maps.faces.size());
   for (const LightView& view : views.faces) transparentFace(view, views, seed + static_cast<std::uint32_t>(maps.faces.size()));
   block.faces[1] = static_cast<int>(maps.faces.size()) - block.faces[0];
+  if (block.faces[1] > 0 && settings_.form != Form::published) {
+    const LightView& view = views.faces[0];
+    const double edge = views.faces.size() > 1 ? settings_.size / 2 : settings_.size;
+    const double texel = kBias / (std::min(view.camera.focal.x, view.camera.focal.y) * edge);
+    (metric.radial ? block.bias.w : block.bias.z) = static_cast<float>(texel * (metric.radial ? 1.0 : metric.scale));
+    block.bias.z += kSlabReach;
+  }
   block.faces[2] = static_cast<int>(maps.faces.size());
   opaqueViews.scale = metric.scale;
   opaqueViews.offset = metric.offset;
@@ -169,9 +182,9 @@ void MapMaker::light(const Light& light, std::uint32_t seed) {
     const double texel = 2.0 / (std::min(view.camera.focal.x, view.camera.focal.y) * edge);
     // A texel of a cone or cube widens with the distance.
     if (metric.radial)
-      block.opaqueBias.y = static_cast<float>(kOpaqueBias * texel);
+      block.bias.y = static_cast<float>(kOpaqueBias * texel);
     else
-      block.opaqueBias.x = static_cast<float>(kOpaqueBias * texel * metric.scale);
+      block.bias.x = static_cast<float>(kOpaqueBias * texel * metric.scale);
   }
   maps.lights.push_back(block);
 }

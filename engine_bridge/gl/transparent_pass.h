@@ -18,6 +18,7 @@ namespace pellucid {
 
 struct Fog;  // gbuffer/medium.h
 struct LightVolume;
+struct ShadowMaps;  // gbuffer/shadow_maps.h
 
 enum class TextureFilter { mipmap, bilinear, nearest };
 enum class MaskEdge { smooth, hard };
@@ -74,6 +75,8 @@ struct PassSettings {
   std::shared_ptr<const Surroundings> environment;   // a picture of them, which wins over the constant
   ScatterSettings scatter;
   OcclusionSettings occlusion;
+  // What is in the way of the scene's lights, for maps made with this camera; null: nothing is.
+  std::shared_ptr<const ShadowMaps> shadows = nullptr;
   LayerChoice layers = LayerChoice::all;
   int probeCell = 1;  // above 1, lists hold one pixel of every cell of this edge alone: shaders/shared/probe.glsl
   std::shared_ptr<const LightVolume> particleLight;  // what of the lights reaches particles; null: all of them do

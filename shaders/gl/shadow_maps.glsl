@@ -17,7 +17,7 @@ ShadowLight shadowLight(int index) {
   light.metric = shadowRow(row);
   light.faces = shadowTable[row + 1];
   light.lookup = shadowTable[row + 2];
-  light.opaqueBias = shadowRow(row + 3);
+  light.bias = shadowRow(row + 3);
   return light;
 }
 

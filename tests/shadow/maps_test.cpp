@@ -146,10 +146,10 @@ TEST(ShadowMaps, LightLeaksBehindSeveralLayers) {
       std::printf(" %.2f m %.4f,", height, compare(maps, rays, camera, 0, low, high, false, height).mean);
     std::printf("\n");
     if (form == Form::variance) {
-      EXPECT_LT(compare(maps, rays, camera, 0, low, high).worst, 1e-3);           // no leak at all on the floor
-      EXPECT_EQ(compare(maps, rays, camera, 0, low, high, false, 2.1).worst, 0);  // above everything
-      // Upper bounds: .6^4 = .13 in truth.
-      EXPECT_LT(compare(maps, rays, camera, 0, low, high, false, .8).mean, .25);
+      EXPECT_LT(compare(maps, rays, camera, 0, low, high).worst, 1e-3);  // no leak at all on the floor
+      // Four sheets are no slab: a little too dark before the first, too light behind it.
+      for (const double height : {.8, 1.15, 1.45, 1.75, 2.1})
+        EXPECT_LT(compare(maps, rays, camera, 0, low, high, false, height).mean, .1) << height;
     }
     if (form == Form::corrected) {
       for (const double height : {.8, 1.15, 1.45, 1.75})

@@ -58,6 +58,22 @@ TEST_F(StochasticVerb, SameSeedSameBitsWhateverTheOrderChunksAndThreads) {
   EXPECT_GT(meanError(one, noise), 1e-4);
 }
 
+TEST_F(StochasticVerb, GlDrawsWhatTheCpuSamples) {
+  for (const std::string method : {"stochastic:basic", "stochastic:alpha", "stochastic:depth"}) {
+    const auto cpu = composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16"});
+    const auto gl = composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16", "--sampled-on", "gl"});
+    const auto shuffled = composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16", "--sampled-on", "gl",
+                                     "--order", "shuffle:3", "--budget", "64K", "--threads", "1"});
+    double worst = 0;
+    for (std::size_t i = 0; i < cpu.size(); ++i) {
+      ASSERT_EQ(gl[i], shuffled[i]) << i;
+      for (int c = 0; c < 4; ++c) worst = std::max(worst, std::abs(static_cast<double>(cpu[i][c] - gl[i][c])));
+    }
+    std::printf("%s: gl and cpu at most %.2g apart\n", method.c_str(), worst);
+    EXPECT_LT(worst, 1e-4);
+  }
+}
+
 TEST_F(StochasticVerb, EveryVariantTendsToTheTruth) {
   const auto truth = composite({"--method", "over", "--aa", "4"});
   for (const std::vector<std::string>& how : {std::vector<std::string>{"stochastic:basic"},
@@ -83,6 +99,7 @@ TEST_F(StochasticVerb, FlagsThatItCannotHonourAreErrors) {
   refused({"--method", "stochastic:alpha", "--correction", "off"}, "always corrected");
   refused({"--method", "stochastic:fancy"}, "stochastic[:basic|alpha|depth]");
   refused({"--method", "over", "--seed", "3"}, "draws no random numbers");
+  refused({"--method", "over", "--sampled-on", "gl"}, "draws no random numbers");
   refused({"--samples", "8"}, "draws no random numbers");
   refused({"--method", "stochastic", "--weight", "eq7"}, "does not weigh");
   refused({"--method", "stochastic", "--precision", "exact"}, "--precision");
