@@ -47,6 +47,10 @@ void writeOpaque(const std::string& path, const OpaquePicture& picture, const Vi
   plane("Z", Imf::FLOAT, picture.viewZ.data(), sizeof(float));
   plane("AO", Imf::FLOAT, picture.occlusion.data(), sizeof(float));
 
+  const char* const suns[3] = {"light.sun.R", "light.sun.G", "light.sun.B"};
+  if (!picture.sun.empty())
+    for (int c = 0; c < 3; ++c) plane(suns[c], Imf::FLOAT, &picture.sun.data()->x + c, sizeof(glm::vec3));
+
   float worldToCamera[4][4], worldToNdc[4][4];
   cameraToExr(view.camera(), worldToCamera, worldToNdc);
   header.insert("worldToCamera", Imf::M44fAttribute(matrix(worldToCamera)));

@@ -9,7 +9,8 @@
 
 namespace pellucid::samples {
 
-// Half R G B A (A = 1), float Z, N.X N.Y N.Z and AO, ZIP, worldToCamera and worldToNDC. Written with OpenEXR alone, as
+// Half R G B A (A = 1), float Z, N.X N.Y N.Z and AO, light.sun.* where the picture has it, ZIP, worldToCamera and
+// worldToNDC. Written with OpenEXR alone, as
 // another renderer would, so that our reader meets a file that our writer had no part in.
 void writeOpaque(const std::string& path, const OpaquePicture& picture, const View& view);
 

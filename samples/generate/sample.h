@@ -30,6 +30,8 @@ Sample smokeBall(std::uint32_t particles);  // the sample `smokeball` with --par
 Sample shafts();
 Sample street();
 Sample mixed();
+Sample shadows();
+Sample chess();
 
 struct Entry {
   const char* name;
@@ -39,6 +41,7 @@ inline const std::vector<Entry> kSamples = {{"bars", bars},       {"bottles", bo
                                             {"foliage", foliage}, {"frosted", frosted}, {"ball", ball},
                                             {"hair", hair},       {"cad", cad},         {"clouds", clouds},
                                             {"street", street},   {"mixed", mixed},
-                                            {"smokeball", smokeball}, {"shafts", shafts}};
+                                            {"smokeball", smokeball}, {"shafts", shafts},
+                                            {"shadows", shadows}, {"chess", chess}};
 
 }  // namespace pellucid::samples

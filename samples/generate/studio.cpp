@@ -69,18 +69,19 @@ glm::dvec3 sunlight(const Studio& studio, glm::dvec3 point, glm::dvec3 normal, i
 }
 
 struct Lit {
-  glm::dvec3 radiance;
+  glm::dvec3 radiance, sun;  // sun: its part
   double open;  // [0,1]
 };
 
 Lit shade(const Studio& studio, const Ray& ray, int sample, const PixelSeed& seed) {
   const auto hit = nearestHit(studio.shapes, ray);
-  if (!hit) return {studio.sky ? studio.sky(ray.direction) : glm::dvec3(0.0), 1.0};
+  if (!hit) return {studio.sky ? studio.sky(ray.direction) : glm::dvec3(0.0), glm::dvec3(0.0), 1.0};
   const glm::dvec3 normal = glm::dot(hit->normal, ray.direction) > 0.0 ? -hit->normal : hit->normal;
   const glm::dvec3 point = ray.origin + hit->distance * ray.direction + 1e-5 * normal;
   const double open = openness(studio, point, normal, sample, seed);
   const glm::dvec3 albedo = hit->shape->albedo(point);
-  return {albedo * (sunlight(studio, point, normal, sample, seed) / kPi + studio.ambient * open), open};
+  const glm::dvec3 sun = sunlight(studio, point, normal, sample, seed) / kPi;
+  return {albedo * (sun + studio.ambient * open), albedo * sun, open};
 }
 
 }  // namespace
@@ -98,17 +99,20 @@ OpaquePicture render(const Studio& studio, const View& view) {
   out.viewZ = Image<float>(view.width, view.height, std::numeric_limits<float>::infinity());
   out.normal = Image<glm::vec3>(view.width, view.height);
   out.occlusion = Image<float>(view.width, view.height);
+  if (studio.sunLayer) out.sun = Image<glm::vec3>(view.width, view.height);
   tbb::parallel_for(0, view.height, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const PixelSeed seed(x, y);
-      Lit sum{glm::dvec3(0.0), 0.0};
+      Lit sum{glm::dvec3(0.0), glm::dvec3(0.0), 0.0};
       for (int sample = 0; sample < kEdge * kEdge; ++sample) {
         const glm::dvec2 at = stratum(sample, kEdge, glm::dvec2(0.0));
         const Lit lit = shade(studio, rayThrough(x + at.x, y + at.y), sample, seed);
         sum.radiance += lit.radiance;
+        sum.sun += lit.sun;
         sum.open += lit.open;
       }
       out.beauty.at(x, y) = glm::vec3(sum.radiance / static_cast<double>(kEdge * kEdge));
+      if (studio.sunLayer) out.sun.at(x, y) = glm::vec3(sum.sun / static_cast<double>(kEdge * kEdge));
       out.occlusion.at(x, y) = static_cast<float>(sum.open / (kEdge * kEdge));
       const Ray centre = rayThrough(x + 0.5, y + 0.5);
       if (const auto hit = nearestHit(studio.shapes, centre)) {

@@ -31,6 +31,7 @@ struct Studio {
   glm::dvec3 ambient{0.0};                            // radiance that arrives from everywhere, W/(m^2 sr)
   double ambientReach = 1.5;                          // metres within which a shape hides it
   std::function<glm::dvec3(glm::dvec3 fromEye)> sky;  // radiance where nothing is hit, by unit direction
+  bool sunLayer = false;                              // the sun's part of the beauty is a layer of its own
 };
 
 // What the render leaves. Beauty and occlusion are filtered over the pixel (box, 16 samples); depth and normal are
@@ -40,6 +41,7 @@ struct OpaquePicture {
   Image<float> viewZ;       // planar metres, +inf where nothing was hit
   Image<glm::vec3> normal;  // world, unit; 0 where nothing was hit
   Image<float> occlusion;   // [0,1], 1 = open
+  Image<glm::vec3> sun;     // the sun's part of the beauty; empty unless asked for
 };
 
 OpaquePicture render(const Studio& studio, const View& view);
