@@ -1,6 +1,6 @@
 // One transparent fragment: fetch, shade through the shared model, write. Defines choose the output (OUTPUT_SUMS,
-// OUTPUT_PUBLISHED, OUTPUT_RIMS, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID; of stochastic transparency OUTPUT_COVER, OUTPUT_CLAIM,
-// OUTPUT_ADD), what the material has and what the frame needs.
+// OUTPUT_PUBLISHED, OUTPUT_RIMS, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID; of stochastic transparency OUTPUT_COVER,
+// OUTPUT_CLAIM, OUTPUT_ADD), what the material has and what the frame needs.
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
