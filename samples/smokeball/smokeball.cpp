@@ -34,6 +34,7 @@ Sample smokeBall(std::uint32_t particles) {
   Studio& studio = sample.studio;
   studio.toSun = glm::normalize(glm::dvec3(-0.75, 0.9, 0.35));
   studio.sunIrradiance = {8.0, 7.5, 6.8};
+  studio.sunLayer = true;
   studio.ambient = {0.08, 0.1, 0.13};
   studio.sky = [](glm::dvec3) { return glm::dvec3(0.08, 0.1, 0.13); };
   studio.shapes = {
