@@ -85,6 +85,19 @@ Image<std::uint8_t> occludersWanted(const FoliagePlanes& layer, const Window& oc
   return wanted;
 }
 
+glm::vec2 neighboursOcclusion(const OccluderPlanes& occluders, glm::ivec2 place, const shading::OcclusionSearch& search,
+                              float z, int form) {
+  glm::vec2 sum(0.0f);
+  for (int tap = 0; tap < search.taps; ++tap) {
+    const glm::ivec2 at = shading::occlusionPixel(place, search, tap, form, sizeOf(occluders.data));
+    const float open = occluders.occlusion.at(at.x, at.y);
+    const float opaqueZ = occluders.viewZ.at(at.x, at.y);
+    if (!std::isfinite(open) || !isDepth(opaqueZ)) continue;
+    sum += shading::occlusionTap(search, tap, glm::clamp(open, 0.0f, 1.0f), opaqueZ, z, form);
+  }
+  return sum;
+}
+
 InferredOcclusion inferOcclusion(const FoliagePlanes& layer, const OccluderPlanes& occluders, int form) {
   const int width = layer.coverage.width(), height = layer.coverage.height();
   InferredOcclusion result;
@@ -94,7 +107,6 @@ InferredOcclusion inferOcclusion(const FoliagePlanes& layer, const OccluderPlane
   };
   std::vector<Counts> counts(static_cast<std::size_t>(height));
   const Rims rims(layer, occluders.data);
-  const glm::ivec2 size = sizeOf(occluders.data);
   forRows(height, [&](int y) {
     Counts& count = counts[static_cast<std::size_t>(y)];
     for (int x = 0; x < width; ++x) {
@@ -106,14 +118,7 @@ InferredOcclusion inferOcclusion(const FoliagePlanes& layer, const OccluderPlane
         continue;
       }
       const shading::OcclusionSearch search = shading::occlusionSearch(rims.gradient(x, y));
-      glm::vec2 sum(0.0f);
-      for (int tap = 0; tap < search.taps; ++tap) {
-        const glm::ivec2 at = shading::occlusionPixel(rims.place(x, y), search, tap, form, size);
-        const float open = occluders.occlusion.at(at.x, at.y);
-        const float opaqueZ = occluders.viewZ.at(at.x, at.y);
-        if (!std::isfinite(open) || !isDepth(opaqueZ)) continue;
-        sum += shading::occlusionTap(search, tap, glm::clamp(open, 0.0f, 1.0f), opaqueZ, z, form);
-      }
+      const glm::vec2 sum = neighboursOcclusion(occluders, rims.place(x, y), search, z, form);
       if (sum.y <= 0.0f) ++count.withoutSources;
       result.occlusion.at(x, y) = shading::occlusionFrom(sum, form);
     }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "composite/denormals.h"
+#include "composite/occlusion.h"
 
 namespace pellucid {
 
@@ -19,13 +20,8 @@ std::size_t occludeRims(const RimPlanes& rims, const OccluderPlanes& occluders, 
       ++found;
       const float z = added.a / averaged.a;
       const shading::OcclusionSearch search = shading::occlusionSearch(rims.gradient.at(x, y) / averaged.a);
-      glm::vec2 sum(0.0f);
-      for (int tap = 0; tap < search.taps; ++tap) {
-        const glm::ivec2 at = shading::occlusionPixel({x, y}, search, tap, form, size);
-        sum += shading::occlusionTap(search, tap, occluders.occlusion.at(at.x, at.y), occluders.viewZ.at(at.x, at.y), z,
-                                     form);
-      }
-      const float hidden = 1.0f - shading::occlusionFrom(sum, form);
+      const float hidden =
+          1.0f - shading::occlusionFrom(neighboursOcclusion(occluders, {x, y}, search, z, form), form);
       planes.radiance.at(x, y) -= glm::vec4(hidden * glm::vec3(averaged), 0.0f);
       planes.light.at(x, y) -= glm::vec4(hidden * glm::vec3(added), 0.0f);
     }
