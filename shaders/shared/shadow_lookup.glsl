@@ -53,18 +53,24 @@ PLD_FN vec3 shadowCloser(ShadowFace face, vec3 place, int channel, int edge, flo
 }
 
 // What transparent casters leave of a light, in one channel. [0,1]
-//   standsBehind  the receiver is opaque, so that all casters of its texels lie before it
+//   standsBehind  the receiver is opaque: casters of its texels lie before it, all of them, or all behind it where the
+//                 lookup reaches past the rim of what it stands on
 PLD_FN float shadowPassed(ShadowLight light, ShadowFace face, vec3 place, int channel, float depth, bool standsBehind) {
   bool scaled = light.lookup.y != 0;
+  float contact = depth + 2.0f * (light.bias.z + light.bias.w * depth);  // at 45 degrees the whole filter's reach
   if (light.lookup.x == PLD_SHADOW_CLOSER) {
-    vec3 sum = shadowCloser(face, place, channel, light.lookup.z, depth);
+    bool whole = scaled && standsBehind;
+    vec3 sum = shadowCloser(face, place, channel, light.lookup.z, whole ? contact : depth);
     if (!scaled) return 1.0f - sum.z;
-    if (standsBehind || !(sum.y > 0.0f)) return 1.0f - sum.x;
-    return 1.0f - sum.x * (sum.z / sum.y);
+    if (!(sum.y > 0.0f)) return 1.0f - sum.x;
+    float share = whole ? (sum.z > 0.0f ? 1.0f : 0.0f) : sum.z / sum.y;
+    return 1.0f - sum.x * share;
   }
   vec4 texel = shadowBilinear(face, place, channel);
   if (light.lookup.x == PLD_SHADOW_CHEBYSHEV) return 1.0f - (scaled ? texel.x : texel.y) * casterShare(texel, depth);
-  return 1.0f - texel.x * (standsBehind ? 1.0f : slabShare(texel, depth));
+  if (!standsBehind) return 1.0f - texel.x * slabShare(texel, depth);
+  bool allBehind = texel.y > 0.0f && slabBegin(texel) > contact;
+  return allBehind ? 1.0f : 1.0f - texel.x;
 }
 
 PLD_FN vec3 transparentVisibility(int lightIndex, vec3 point, bool standsBehind) {

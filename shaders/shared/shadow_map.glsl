@@ -97,6 +97,14 @@ PLD_FN float slabShare(vec4 texel, float depth) {
   return clamp((depth - mean + reach) / (2.0f * reach), 0.0f, 1.0f);
 }
 
+// Where that slab begins: nothing casts before it.
+PLD_FN float slabBegin(vec4 texel) {
+  precise float mean = texel.z / texel.y;
+  precise float variance = max(texel.w / texel.y - mean * mean, PLD_SHADOW_LEAST_VARIANCE);
+  precise float begin = mean - sqrt(3.0f * variance);
+  return begin;
+}
+
 const int PLD_SHADOW_CHEBYSHEV = 0;  // variance shadow map: one bilinear lookup, bounded as PT17 has it
 const int PLD_SHADOW_CLOSER = 1;     // percentage closer: a square of texels, each before or behind
 const int PLD_SHADOW_SLAB = 2;       // one bilinear lookup, casters taken to fill a slab; scaled to the exact density
