@@ -58,7 +58,9 @@ std::string load(pld_get_proc_address get, void* user, GlFunctions& gl) {
     return "blending per draw buffer (OpenGL 4.0 or GL_ARB_draw_buffers_blend): found '" + found + "' without it";
   later(gl.version >= 41 || has(gl, "GL_ARB_viewport_array"), "glGetFloati_v", gl.GetFloati_v);
   later(gl.version >= 41 || has(gl, "GL_ARB_viewport_array"), "glViewportIndexedf", gl.ViewportIndexedf);
-  later(gl.version >= 45 || has(gl, "GL_ARB_direct_state_access"), "glGetTextureParameteriv", gl.GetTextureParameteriv);
+  // What a texture is, Mesa says in core contexts alone.
+  later(gl.core && (gl.version >= 45 || has(gl, "GL_ARB_direct_state_access")), "glGetTextureParameteriv",
+        gl.GetTextureParameteriv);
   later(gl.version >= 45 || has(gl, "GL_ARB_texture_barrier"), "glTextureBarrier", gl.TextureBarrier);
   later(debug, "glGetObjectLabel", gl.GetObjectLabel);
   later(debug, "glObjectLabel", gl.ObjectLabel);

@@ -202,12 +202,13 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   setFrame(frame);
   if (first && permutation_.planarDepth()) {
     drawPlanarDepth(frame);
-    if (saves) saved_.restoreShape(gl);
+    if (saves) saved_.restoreForDraws(gl);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   }
   setAccumulation(gl, frame.width, frame.height);
   clearStage(stage);
   openStage(stage);
+  if (saves) saved_.restoreActiveUnit(gl);
   timers_.mark(gl, Timers::markOf(stage, 1));
   frame_ = frame;
   stage_ = stage;

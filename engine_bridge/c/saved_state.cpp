@@ -113,14 +113,9 @@ void SavedState::restore(const GlFunctions& gl) const {
   restoreShape(gl);
   for (int i = 0; i < kAccumulationSwitches; ++i) choose(gl, kSwitches[i], enabled_[i] != GL_FALSE);
   if (!gl.core) choose(gl, kAlphaTest, enabled_[std::size(kSwitches)] != GL_FALSE);
-  for (int i = 0; i < units_.count; ++i) {
-    gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + i));
-    gl.BindTexture(GL_TEXTURE_2D, textures_[i] && gl.IsTexture(name(textures_[i])) ? name(textures_[i]) : 0);
-    gl.BindSampler(name(units_.first + i), name(samplers_[i]));
-  }
-  gl.ActiveTexture(name(activeTexture_));
-  gl.BindVertexArray(name(vertexArray_));
-  gl.UseProgram(program_ && gl.IsProgram(name(program_)) ? name(program_) : 0);
+  for (int i = 0; i < units_.count; ++i) restoreUnit(gl, i);
+  restoreActiveUnit(gl);
+  restoreObjects(gl);
   if (uniformBinding_ >= 0) {
     const GLuint index = name(uniformBinding_);
     if (indexedBuffer_ && indexedSize_ > 0)
@@ -130,6 +125,29 @@ void SavedState::restore(const GlFunctions& gl) const {
       gl.BindBufferBase(GL_UNIFORM_BUFFER, index, name(indexedBuffer_));
   }
   gl.BindBuffer(GL_UNIFORM_BUFFER, name(uniformBuffer_));
+}
+
+void SavedState::restoreUnit(const GlFunctions& gl, int i) const {
+  const auto name = static_cast<GLuint>(textures_[i]), unit = static_cast<GLuint>(units_.first + i);
+  gl.ActiveTexture(GL_TEXTURE0 + unit);
+  gl.BindTexture(GL_TEXTURE_2D, name && gl.IsTexture(name) ? name : 0);
+  gl.BindSampler(unit, static_cast<GLuint>(samplers_[i]));
+}
+
+void SavedState::restoreActiveUnit(const GlFunctions& gl) const {
+  gl.ActiveTexture(static_cast<GLenum>(activeTexture_));
+}
+
+void SavedState::restoreObjects(const GlFunctions& gl) const {
+  const auto program = static_cast<GLuint>(program_);
+  gl.BindVertexArray(static_cast<GLuint>(vertexArray_));
+  gl.UseProgram(program && gl.IsProgram(program) ? program : 0);
+}
+
+void SavedState::restoreForDraws(const GlFunctions& gl) const {
+  restoreShape(gl);
+  restoreUnit(gl, 0);
+  restoreObjects(gl);
 }
 
 void SavedState::restoreShape(const GlFunctions& gl) const {

@@ -18,10 +18,15 @@ class SavedState {
   void save(const GlFunctions& gl, Units units, int uniformBinding);
   // Put back what save() saw; objects that the host has deleted since are left unbound.
   void restore(const GlFunctions& gl) const;
-  // Culling, polygon mode and clipping alone, which the host's own draws of a stage go by.
-  void restoreShape(const GlFunctions& gl) const;
+  // What the host's own draws of a stage go by, after a draw of ours with one texture: culling, polygon mode, clipping,
+  // program, vertex array and unit 0.
+  void restoreForDraws(const GlFunctions& gl) const;
+  void restoreActiveUnit(const GlFunctions& gl) const;
 
  private:
+  void restoreShape(const GlFunctions& gl) const;
+  void restoreUnit(const GlFunctions& gl, int i) const;
+  void restoreObjects(const GlFunctions& gl) const;
   struct Blend {
     GLboolean enabled, mask[4];
     GLint sourceRgb, targetRgb, sourceAlpha, targetAlpha, equationRgb, equationAlpha;

@@ -1,0 +1,97 @@
+// Hosts that draw with the compatibility profile, and bind what they draw with before pld_begin(), not after it.
+#include <epoxy/egl.h>
+#include <gtest/gtest.h>
+
+#include "tests/bridge/gl_state.h"
+#include "tests/bridge/host.h"
+
+namespace pellucid::test {
+namespace {
+
+// As hosts have it that ask for no profile.
+class CompatibleContext {
+ public:
+  CompatibleContext() : display_(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)) {
+    EXPECT_TRUE(eglInitialize(display_, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API));
+    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
+    EXPECT_TRUE(eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_));
+  }
+  ~CompatibleContext() {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+  }
+
+ private:
+  EGLDisplay display_;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+constexpr uint32_t kAll = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
+                          PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS;
+
+// A triangle of generic attributes in vertex array 0, with a texture on unit 0.
+const char* const kVertex = R"(#version 330 compatibility
+layout(location = 0) in vec2 corner;
+void main() { gl_Position = vec4(corner, 0.5, 1.0); }
+)";
+const char* const kMain = R"(
+uniform sampler2D tint;
+void main() { pldWriteFragment(pldSurface(0.1 * texture(tint, vec2(0.5)).rgb, 0.5, vec3(0.5), vec3(0.0, 0.0, -3.0))); }
+)";
+
+TEST(BridgeCompatibility, DrawsWithWhatWasBoundBeforeBegin) {
+  CompatibleContext context;
+  GLint profile = 0;
+  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  ASSERT_EQ(profile & GL_CONTEXT_CORE_PROFILE_BIT, 0) << "this device has no compatibility profile";
+  Host host(24, 16);
+  pld_create_info info = host.info();
+  info.features = kAll;
+  GLuint tint = makeTexture(GL_RGBA32F, 1, 1), buffer = 0;
+  const float green[4] = {0, 1, 0, 1}, corners[6] = {-1, -1, 3, -1, -1, 3};
+  fillTexture(tint, 1, 1, GL_RGBA, green);
+  glCreateBuffers(1, &buffer);
+  glNamedBufferData(buffer, sizeof(corners), corners, GL_STATIC_DRAW);
+  glBindBuffer(GL_ARRAY_BUFFER, buffer);
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, tint);
+  pld_pass* pass = host.create(info);
+  ASSERT_NE(pass, nullptr);
+  const pld_frame frame = host.frame();
+  for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS}) {
+    const char* seam = nullptr;
+    ASSERT_EQ(pld_glsl(pass, stage, 330, &seam), PLD_OK);
+    const GLuint program = makeProgram(kVertex, std::string("#version 330 compatibility\n") + seam + kMain);
+    ASSERT_NE(program, 0u);
+    ASSERT_EQ(pld_connect(pass, program), PLD_OK);
+    glUseProgram(program);
+    const GlState before = glState();
+    ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    ASSERT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
+    for (const std::string& one : changes(before, glState())) ADD_FAILURE() << "stage " << stage << " leaves " << one;
+  }
+  pld_target target = host.target();
+  const GlState before = glState();
+  ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
+  EXPECT_EQ(changes(before, glState()).size(), 0u);
+  // One layer of light .1 green and net coverage .25 over the picture's .5, .4, .3.
+  const std::vector<float> picture = host.picture();
+  EXPECT_NEAR(picture[0], 0.5f * 0.75f, 1e-6f);
+  EXPECT_NEAR(picture[1], 0.4f * 0.75f + 0.1f, 1e-6f);
+  EXPECT_NEAR(picture[2], 0.3f * 0.75f, 1e-6f);
+  // A texture of another kind is refused here too, where the driver does not say of what kind a texture is.
+  pld_frame wrong = frame;
+  glCreateTextures(GL_TEXTURE_3D, 1, &wrong.depth_texture);
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  EXPECT_EQ(pld_begin(pass, PLD_STAGE_SOLIDS, &wrong), PLD_ERROR_TEXTURE);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+  glDeleteTextures(1, &tint);
+}
+
+}  // namespace
+}  // namespace pellucid::test
