@@ -29,7 +29,7 @@ struct Library {
   Names homes;         // folders that may include it, besides tests
 };
 const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine"}},
-                              {"EGL/", {"engine_bridge/gl"}},
+                              {"EGL/", {"engine_bridge/gl", "samples/osg"}},
                               {"GL/", {"engine_bridge/gl", "engine_bridge/c", "samples/vtk"}},
                               {"embree3/", {"engine_bridge/embree"}},
                               {"openvdb/", {"engine_bridge/scene"}},
