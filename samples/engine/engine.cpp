@@ -1,12 +1,15 @@
 // The smallest deferred engine that has transparency: G-buffer, light pass, Pellucid's pass, resolve. Of Pellucid it knows
-// the public header alone. Headless, by EGL.
+// the public header alone. Headless by EGL, or in a window.
 //
-//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD]    METHOD: phenomenological, weighted or front+tail
+//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD] [window[:FRAMES]]    METHOD: phenomenological, weighted or front+tail
 //
 // Draws the glTF's transparent primitives over a room of its own, and writes OUTDIR/opaque.exr (colour and Z, what
-// `pellucid composite` takes) and OUTDIR/frame.exr.
+// `pellucid composite` takes) and OUTDIR/frame.exr. `window` walks around them until it is closed; with FRAMES it stands
+// still for so many, and OUTDIR/window.exr is what the window shows of the last.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+// After them: it brings a GL of its own.
+#include <GLFW/glfw3.h>
 
 #include <OpenImageIO/imageio.h>
 #include <pellucid/pellucid.h>
@@ -53,7 +56,7 @@ struct Vertex {
 struct Material {
   glm::vec4 base{1.0f};
   float roughness = 1.0f, transmission = 0.0f, ior = 1.5f, thickness = 0.0f;
-  bool unlit = false, blend = false, bothSides = false, volume = false;
+  bool unlit = false, blend = false, bothSides = false;
   bool transparent() const { return blend || transmission > 0.0f; }
 };
 
@@ -113,9 +116,7 @@ void addRoom(Scene& scene) {
   const glm::vec3 centre = 0.5f * (scene.least + scene.most), size = scene.most - scene.least;
   const float r = std::max(size.x, std::max(size.y, size.z));
   const glm::vec3 eye = glm::vec3(glm::inverse(scene.viewFromWorld)[3]);
-  glm::vec3 away = centre - eye;
-  away.y = 0.0f;
-  away = glm::normalize(away);
+  const glm::vec3 away = glm::normalize((centre - eye) * glm::vec3(1, 0, 1));
   const glm::vec3 side = glm::normalize(glm::cross(away, glm::vec3(0, 1, 0)));
   const float floor = scene.least.y - 1e-3f * r;
   const auto block = [&](float across, float behind, float half, float high, glm::vec3 colour) {
@@ -163,8 +164,7 @@ Gltf read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> all((std::istreambuf_iterator<char>(file)), {});
   std::uint32_t header[5] = {};
-  if (all.size() < 28) stop(path + ": no GLB");
-  std::memcpy(header, all.data(), sizeof header);
+  if (all.size() >= 28) std::memcpy(header, all.data(), sizeof header);
   if (header[0] != 0x46546c67 || all.size() < 28 + std::size_t{header[3]}) stop(path + ": no GLB");
   Gltf gltf;
   gltf.root = json::parse(all.data() + 20, all.data() + 20 + header[3]);
@@ -173,10 +173,7 @@ Gltf read(const std::string& path) {
 }
 
 glm::mat4 transformOf(const json& node) {
-  if (node.contains("matrix")) {
-    const auto m = node["matrix"].get<std::vector<float>>();
-    return glm::make_mat4(m.data());
-  }
+  if (node.contains("matrix")) return glm::make_mat4(node["matrix"].get<std::vector<float>>().data());
   const auto t = node.value("translation", std::vector<float>{0, 0, 0}), s = node.value("scale", std::vector<float>{1, 1, 1}),
              q = node.value("rotation", std::vector<float>{0, 0, 0, 1});
   return glm::translate(glm::mat4(1.0f), glm::vec3(t[0], t[1], t[2])) * glm::mat4_cast(glm::quat(q[3], q[0], q[1], q[2])) *
@@ -185,19 +182,16 @@ glm::mat4 transformOf(const json& node) {
 
 Material materialOf(const json& source) {
   Material material;
-  const json pbr = source.value("pbrMetallicRoughness", json::object()), more = source.value("extensions", json::object());
+  const json none = json::object(), pbr = source.value("pbrMetallicRoughness", none), more = source.value("extensions", none);
   const auto base = pbr.value("baseColorFactor", std::vector<float>{1, 1, 1, 1});
   material.base = glm::vec4(base[0], base[1], base[2], base[3]);
   material.roughness = pbr.value("roughnessFactor", 1.0f);
   material.blend = source.value("alphaMode", "OPAQUE") == "BLEND";
   material.bothSides = source.value("doubleSided", false);
   material.unlit = more.contains("KHR_materials_unlit");
-  if (more.contains("KHR_materials_transmission"))
-    material.transmission = more["KHR_materials_transmission"].value("transmissionFactor", 0.0f);
-  if (more.contains("KHR_materials_ior")) material.ior = more["KHR_materials_ior"].value("ior", 1.5f);
-  if (more.contains("KHR_materials_volume"))
-    material.thickness = more["KHR_materials_volume"].value("thicknessFactor", 0.0f);
-  material.volume = material.thickness > 0.0f;
+  material.transmission = more.value("KHR_materials_transmission", none).value("transmissionFactor", 0.0f);
+  material.ior = more.value("KHR_materials_ior", none).value("ior", 1.5f);
+  material.thickness = more.value("KHR_materials_volume", none).value("thicknessFactor", 0.0f);
   return material;
 }
 
@@ -363,13 +357,14 @@ class Engine {
     lit_ = texture(GL_RGBA32F);
     depth_ = texture(GL_DEPTH_COMPONENT32F);
     frame_ = texture(GL_RGBA32F);
-    glCreateFramebuffers(2, frames_);
+    glCreateFramebuffers(3, frames_);
     glNamedFramebufferTexture(frames_[0], GL_COLOR_ATTACHMENT0, albedo_, 0);
     glNamedFramebufferTexture(frames_[0], GL_COLOR_ATTACHMENT1, normal_, 0);
     glNamedFramebufferTexture(frames_[0], GL_DEPTH_ATTACHMENT, depth_, 0);
     const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     glNamedFramebufferDrawBuffers(frames_[0], 2, both);
     glNamedFramebufferTexture(frames_[1], GL_COLOR_ATTACHMENT0, lit_, 0);
+    glNamedFramebufferTexture(frames_[2], GL_COLOR_ATTACHMENT0, frame_, 0);
     glCreateVertexArrays(1, &nothing_);
     opaque_ = program(kMeshVertex, kGBuffer);
     light_ = program(kFullscreen, kLight);
@@ -396,11 +391,8 @@ class Engine {
 
   void draw(const Scene& scene) {
     const float f = 1.0f / std::tan(0.5f * scene.yfov);
-    clipFromView_ = glm::mat4(0.0f);  // reversed depth, nothing is too far
-    clipFromView_[0][0] = f * static_cast<float>(height_) / static_cast<float>(width_);
-    clipFromView_[1][1] = f;
-    clipFromView_[2][3] = -1.0f;
-    clipFromView_[3][2] = kNear;
+    const float across = f * static_cast<float>(height_) / static_cast<float>(width_);
+    clipFromView_ = glm::mat4(across, 0, 0, 0, 0, f, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0);  // reversed depth, nothing is too far
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glViewport(0, 0, width_, height_);
 
@@ -449,12 +441,19 @@ class Engine {
     check(pld_resolve(pass_, &target), pass_);
   }
 
-  // Rows top to bottom.
-  void write(const std::string& path, bool frame) const {
-    std::vector<float> colour(pixels() * 4), depth(pixels());
-    read(frame ? frame_ : lit_, GL_RGBA, colour);
-    read(depth_, GL_DEPTH_COMPONENT, depth);
-    std::vector<float> rows;
+  // Into the window, as sRGB.
+  void show() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glBlitNamedFramebuffer(frames_[2], 0, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+  }
+
+  GLuint lit() const { return lit_; }
+  GLuint frame() const { return frame_; }
+  // A texture or, 0, what the window shows, with Z; rows top to bottom.
+  void write(const std::string& path, GLuint source) const {
+    std::vector<float> rows, depth = read(depth_, GL_DEPTH_COMPONENT, 1), colour = read(source, GL_RGBA, 4);
     for (int y = height_ - 1; y >= 0; --y)
       for (int x = 0; x < width_; ++x) {
         const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
@@ -478,17 +477,19 @@ class Engine {
   }
 
  private:
-  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
-
   GLuint texture(GLenum format) const {
     GLuint name = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &name);
     glTextureStorage2D(name, 1, format, width_, height_);
     return name;
   }
-  void read(GLuint name, GLenum format, std::vector<float>& texels) const {
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glGetTextureImage(name, 0, format, GL_FLOAT, static_cast<GLsizei>(texels.size() * 4), texels.data());
+  std::vector<float> read(GLuint name, GLenum format, std::size_t channels) const {
+    std::vector<float> texels(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * channels);
+    if (name)
+      glGetTextureImage(name, 0, format, GL_FLOAT, static_cast<GLsizei>(texels.size() * 4), texels.data());
+    else
+      glReadPixels(0, 0, width_, height_, format, GL_FLOAT, texels.data());
+    return texels;
   }
   void addStage(pld_stage stage) {
     const char* seam = nullptr;
@@ -516,12 +517,9 @@ class Engine {
       glUniform4fv(glGetUniformLocation(name, "base"), 1, &material.base.x);
       if (transparent) {
         glUniform4f(glGetUniformLocation(name, "surfaceValues"), material.roughness, material.transmission, material.ior, material.thickness);
-        glUniform2i(glGetUniformLocation(name, "kinds"), material.unlit, material.volume);
+        glUniform2i(glGetUniformLocation(name, "kinds"), material.unlit, material.thickness > 0.0f);
       }
-      if (material.bothSides)
-        glDisable(GL_CULL_FACE);
-      else
-        glEnable(GL_CULL_FACE);
+      (material.bothSides ? glDisable : glEnable)(GL_CULL_FACE);
       glBindVertexArray(mesh.array);
       glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
     }
@@ -529,7 +527,7 @@ class Engine {
   }
 
   int width_, height_;
-  GLuint albedo_ = 0, normal_ = 0, lit_ = 0, depth_ = 0, frame_ = 0, frames_[2] = {}, nothing_ = 0, opaque_ = 0, light_ = 0;
+  GLuint albedo_ = 0, normal_ = 0, lit_ = 0, depth_ = 0, frame_ = 0, frames_[3] = {}, nothing_ = 0, opaque_ = 0, light_ = 0;
   std::vector<std::pair<pld_stage, GLuint>> stages_;
   glm::mat4 clipFromView_{1.0f};
   pld_pass* pass_ = nullptr;
@@ -543,10 +541,21 @@ void makeContext() {
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) stop("no OpenGL 4.5");
 }
 
+GLFWwindow* makeWindow(int width, int height) {
+  if (!glfwInit()) stop("no window system");
+  for (const auto& [hint, value] : {std::pair{GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API}, {GLFW_CONTEXT_VERSION_MAJOR, 4},
+                                    {GLFW_CONTEXT_VERSION_MINOR, 5}, {GLFW_RESIZABLE, 0}, {GLFW_SRGB_CAPABLE, 1}})
+    glfwWindowHint(hint, value);
+  GLFWwindow* window = glfwCreateWindow(width, height, "Pellucid", nullptr, nullptr);
+  if (!window) stop("no window with OpenGL 4.5");
+  glfwMakeContextCurrent(window);
+  return window;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count < 3 || count > 5) stop("engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD]");
+  if (count < 3 || count > 6) stop("engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD] [window[:FRAMES]]");
   int width = 640, height = 360;
   if (count > 3 && (std::sscanf(arguments[3], "%dx%d", &width, &height) != 2 || width < 1 || height < 1))
     stop("expected WIDTHxHEIGHT");
@@ -554,8 +563,13 @@ int main(int count, char** arguments) {
   const char* const names[] = {"phenomenological", "weighted", "front+tail"};
   const auto method = std::find(std::begin(names), std::end(names), named) - std::begin(names);
   if (method == 3) stop("no method " + named);
+  const std::string shows = count > 5 ? arguments[5] : "";
+  int frames = 0;
+  if (!shows.empty() && shows != "window" && (std::sscanf(shows.c_str(), "window:%d", &frames) != 1 || frames < 1))
+    stop("expected window or window:FRAMES, found " + shows);
   try {
-    makeContext();
+    GLFWwindow* const window = shows.empty() ? nullptr : makeWindow(width, height);
+    if (!window) makeContext();
     Scene scene;
     const Gltf gltf = read(arguments[1]);
     for (const json& root : gltf.root.at("scenes").at(0).at("nodes")) addNode(scene, gltf, root.get<std::size_t>(), glm::mat4(1.0f));
@@ -563,8 +577,19 @@ int main(int count, char** arguments) {
     Engine engine(width, height, static_cast<pld_method>(method));
     engine.draw(scene);
     engine.draw(scene);  // what a first frame compiles is no matter of its time
-    engine.write(folder + "/opaque.exr", false);
-    engine.write(folder + "/frame.exr", true);
+    engine.write(folder + "/opaque.exr", engine.lit());
+    engine.write(folder + "/frame.exr", engine.frame());
+    const glm::vec3 centre = 0.5f * (scene.least + scene.most);
+    for (int i = 0; window && !glfwWindowShouldClose(window) && (frames == 0 || i < frames); ++i) {
+      engine.draw(scene);
+      engine.show();
+      if (i + 1 == frames) engine.write(folder + "/window.exr", 0);
+      glfwSwapBuffers(window);
+      glfwPollEvents();
+      if (frames > 0) continue;
+      const glm::mat4 turned = glm::rotate(glm::translate(glm::mat4(1.0f), centre), 0.01f, glm::vec3(0, 1, 0));
+      scene.viewFromWorld = scene.viewFromWorld * turned * glm::translate(glm::mat4(1.0f), -centre);
+    }
     std::printf("begin %.2f ms, layers %.2f ms, resolve %.2f ms\n", engine.milliseconds(PLD_VALUE_NS_BEGIN),
                 engine.milliseconds(PLD_VALUE_NS_DRAWS), engine.milliseconds(PLD_VALUE_NS_RESOLVE));
   } catch (const std::exception& error) {
