@@ -1,10 +1,11 @@
-// Opens shaders/shared/shadow_map.glsl to C++, as shading.h does with what more files need.
+// Opens shaders/shared/shadow_map.glsl and shadow_filter.glsl to C++, as shading.h does with what more files need.
 #pragma once
 #include "shaders/shading.h"
 
 namespace pellucid::shading {
 #define PLD_FN inline
 #define precise
+#include "shaders/shared/shadow_filter.glsl"
 #include "shaders/shared/shadow_map.glsl"
 #undef precise
 #undef PLD_FN

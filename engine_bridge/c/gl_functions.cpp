@@ -43,6 +43,8 @@ std::string load(pld_get_proc_address get, void* user, GlFunctions& gl) {
   gl.GetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
   gl.core = (profile & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
 
+  gl.clipControl = gl.version >= 45 || has(gl, "GL_ARB_clip_control");
+
   // A loader may hand out addresses of functions that the context does not have.
   const auto later = [&](bool there, const char* name, auto& function) {
     if (there) ask(get, user, name, function);

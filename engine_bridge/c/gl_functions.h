@@ -46,6 +46,7 @@ namespace pellucid::c {
   X(Enable, PFNGLENABLEPROC)                                   \
   X(Enablei, PFNGLENABLEIPROC)                                 \
   X(FramebufferTexture2D, PFNGLFRAMEBUFFERTEXTURE2DPROC)       \
+  X(FramebufferTextureLayer, PFNGLFRAMEBUFFERTEXTURELAYERPROC) \
   X(GenBuffers, PFNGLGENBUFFERSPROC)                           \
   X(GenFramebuffers, PFNGLGENFRAMEBUFFERSPROC)                 \
   X(GenQueries, PFNGLGENQUERIESPROC)                           \
@@ -80,6 +81,8 @@ namespace pellucid::c {
   X(SamplerParameteri, PFNGLSAMPLERPARAMETERIPROC)             \
   X(ShaderSource, PFNGLSHADERSOURCEPROC)                       \
   X(TexImage2D, PFNGLTEXIMAGE2DPROC)                           \
+  X(TexImage3D, PFNGLTEXIMAGE3DPROC)                           \
+  X(TexParameteri, PFNGLTEXPARAMETERIPROC)                     \
   X(Uniform1f, PFNGLUNIFORM1FPROC)                             \
   X(Uniform1i, PFNGLUNIFORM1IPROC)                             \
   X(Uniform2i, PFNGLUNIFORM2IPROC)                             \
@@ -110,6 +113,7 @@ struct GlFunctions {
 #undef PLD_GL_MEMBER
   int version = 0;  // 10 major + minor
   bool core = false;
+  bool clipControl = false;
 };
 
 // Empty when `gl` holds everything, else what is missing: "OpenGL 3.3, found 2.1". The host's context is current.

@@ -34,11 +34,11 @@ std::string withWords(const std::string& text, F changed) {
   return out;
 }
 
-// What a text declares outside of functions: functions, structs, outputs.
+// What a text declares outside of functions: functions, structs, outputs, constants.
 std::set<std::string> declaredIn(const std::string& text) {
   static const std::regex patterns[] = {
       std::regex(R"(^(?:PLD_FN )?[A-Za-z]\w* (\w+)\()"), std::regex(R"(^struct (\w+))"),
-      std::regex(R"(^layout\(location = \d\) out \w+ (\w+);)")};
+      std::regex(R"(^layout\(location = \d\) out \w+ (\w+);)"), std::regex(R"(^const \w+ (\w+) =)")};
   std::set<std::string> names;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
@@ -49,6 +49,47 @@ std::set<std::string> declaredIn(const std::string& text) {
 
 std::string withoutPreciseBelow400(const std::string& word, int version) {
   return version < 400 && word == "precise" ? std::string() : word;
+}
+
+bool isPublic(const std::string& word) {
+  for (const char* one : {"pldWriteCaster", "pldCasterIdentity", "pldShadow", "pldShadowOnOpaque"})
+    if (word == one) return true;
+  return false;
+}
+
+// How the names of one text keep clear of the host's and of each other's.
+struct Names {
+  const char* guard;
+  const char* prefix;     // of what the host does not call
+  const char* constants;  // of constants, in place of PLD_; empty leaves them
+};
+
+//   macros  of the defines, and those that the text looks for
+std::string hostText(const std::string& file, const std::vector<std::string>& defines, std::set<std::string> macros,
+                     int version, const SeamPlaces& at, const Names& names) {
+  std::string text = shaderSource(file, defines);
+  text.erase(0, text.find('\n') + 1);  // #version
+  text.erase(0, std::string("#define PLD_FN\n").size());
+  std::set<std::string> own = declaredIn(text);
+  own.merge(macros);
+  const bool places = version >= 420;
+  const auto unit = [&](int i) {
+    return places ? "layout(binding = " + std::to_string(at.firstUnit + i) + ")" : std::string();
+  };
+  text = withWords(text, [&](const std::string& word) -> std::string {
+    if (word == "PLD_FN") return {};
+    if (word == "PLD_FRAME_LAYOUT")
+      return places ? "layout(std140, binding = " + std::to_string(at.uniformBinding) + ")" : "layout(std140)";
+    if (word == "PLD_UNIT_0") return unit(0);
+    if (word == "PLD_UNIT_1") return unit(1);
+    if (word == "PLD_UNIT_2") return unit(2);
+    if (own.count(word) && word.rfind("PLD_", 0) == 0) return names.constants[0] ? names.constants + word.substr(4) : word;
+    // Of the shared text pldExp() and its like are not the host's to call, but theirs is the name in the layers' seam.
+    const bool hosts = word.rfind("Pld", 0) == 0 || (word.rfind("pld", 0) == 0 && (!names.constants[0] || isPublic(word)));
+    if (own.count(word) && !hosts) return names.prefix + word;
+    return withoutPreciseBelow400(word, version);
+  });
+  return std::string("#ifndef ") + names.guard + "\n#define " + names.guard + "\n" + text + "#endif\n";
 }
 
 }  // namespace
@@ -71,31 +112,25 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
   return own;
 }
 
-std::string seamText(const Permutation& permutation, pld_stage stage, int version, int uniformBinding, int firstUnit) {
-  const std::vector<std::string> defines = seamDefines(permutation, stage);
-  std::string text = shaderSource("gl/seam.glsl", defines);
-  text.erase(0, text.find('\n') + 1);             // #version
-  text.erase(0, std::string("#define PLD_FN\n").size());
-  std::set<std::string> own = declaredIn(text);
-  for (const char* name : {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "REFRACTS", "DIFFUSES",
-                                  "DISPERSION", "SOLIDS", "STAGE_SOLIDS", "STAGE_FRONT", "DEPTH_IN_SHADER", "UNCOUNTED",
-                                  "WEIGHT", "NORMALISATION"})
-    own.insert(name);
-  const bool places = version >= 420;
-  const auto unit = [&](int i) {
-    return places ? "layout(binding = " + std::to_string(firstUnit + i) + ")" : std::string();
-  };
-  text = withWords(text, [&](const std::string& word) -> std::string {
-    if (word == "PLD_FN") return {};
-    if (word == "PLD_FRAME_LAYOUT")
-      return places ? "layout(std140, binding = " + std::to_string(uniformBinding) + ")" : "layout(std140)";
-    if (word == "PLD_UNIT_0") return unit(0);
-    if (word == "PLD_UNIT_1") return unit(1);
-    if (word == "PLD_UNIT_2") return unit(2);
-    if (own.count(word) && word.rfind("pld", 0) != 0 && word.rfind("Pld", 0) != 0) return "pld_" + word;
-    return withoutPreciseBelow400(word, version);
-  });
-  return "#ifndef PLD_SEAM\n#define PLD_SEAM\n" + text + "#endif\n";
+std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
+  return hostText("gl/seam.glsl", seamDefines(permutation, stage),
+                  {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
+                   "STAGE_SOLIDS", "STAGE_FRONT", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION"},
+                  version, places, {"PLD_SEAM", "pld_", ""});
+}
+
+std::string casterText(bool coloured, int version, const SeamPlaces& places) {
+  std::vector<std::string> defines;
+  if (!coloured) defines.emplace_back("GREY");
+  return hostText("gl/caster_seam.glsl", defines, {"GREY"}, version, places, {"PLD_CASTER_SEAM", "pld_c_", "PLD_C_"});
+}
+
+std::string shadowText(const ShadowShape& shape, int version, const SeamPlaces& places) {
+  const auto define = [](const char* name, int value) { return std::string(name) + " " + std::to_string(value); };
+  return hostText("gl/shadow_seam.glsl",
+                  {define("LIGHTS", shape.lights), define("FACES", shape.faces), define("EDGE", shape.edge),
+                   define("CHANNELS", shape.channels)},
+                  {"LIGHTS", "FACES", "EDGE", "CHANNELS"}, version, places, {"PLD_SHADOW_SEAM", "pld_s_", "PLD_S_"});
 }
 
 }  // namespace pellucid::c

@@ -20,8 +20,21 @@ struct OwnText {
 // A stage of the library's own.
 OwnText ownText(const std::string& file, const std::vector<std::string>& defines, int version);
 
-// The seam, without a #version line. Names that the host does not call begin with pld_, so that they meet none of its own.
+// Where a host's program finds what the library binds, or has it bind.
+struct SeamPlaces {
+  int uniformBinding, firstUnit;
+};
+
+// Texts for hosts, without a #version line. Names that the host does not call begin with pld_, so that they meet none of
+// its own; a shader may hold several of the texts.
 //   version  of GLSL, 330 to 460; below 420 units and binding are left to pld_connect()
-std::string seamText(const Permutation& permutation, pld_stage stage, int version, int uniformBinding, int firstUnit);
+std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places);
+std::string casterText(bool coloured, int version, const SeamPlaces& places);
+
+// How shadow maps lie.
+struct ShadowShape {
+  int lights, faces, edge, channels;  // edge: texels as looked up
+};
+std::string shadowText(const ShadowShape& shape, int version, const SeamPlaces& places);
 
 }  // namespace pellucid::c

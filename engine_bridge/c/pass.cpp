@@ -134,6 +134,7 @@ pld_status pld_pass::create(const pld_create_info& info) {
 
 void pld_pass::destroyObjects() {
   releaseTextures();
+  releaseShadows();
   timers_.destroy(gl);
   for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_}) program->destroy(gl);
   for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &targetFrame_})
@@ -164,6 +165,15 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
       if (!timers_.on()) return fail(PLD_ERROR_UNSUPPORTED, "pld_query: times need PLD_FLAG_TIMERS");
       if (!timers_.read(gl, what, value)) return fail(PLD_ERROR_ORDER, "pld_query: no frame's times are known yet");
       return PLD_OK;
+    case PLD_VALUE_SHADOW_TEXTURE:
+      value = shadowMaps_;
+      return PLD_OK;
+    case PLD_VALUE_SHADOW_BUFFER:
+      value = shadowTable_;
+      return PLD_OK;
+    case PLD_VALUE_SHADOW_BYTES:
+      value = shadowBytes_;
+      return PLD_OK;
     default:
       break;
   }
@@ -176,15 +186,19 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
   return PLD_OK;
 }
 
+pld_status pld_pass::checkGlsl(const char* call, int version) {
+  static constexpr int versions[] = {330, 400, 410, 420, 430, 440, 450, 460};
+  for (const int one : versions)
+    if (one == version) return PLD_OK;
+  return fail(PLD_ERROR_ARGUMENT, "%s: found version %d, expected 330 to 460 as GLSL has them", call, version);
+}
+
 pld_status pld_pass::seam(pld_stage stage, int version, const char*& text) {
   if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LAYERS || !(stagesNeeded() & (1u << stage)))
     return fail(PLD_ERROR_ARGUMENT, "pld_glsl: this pass has no stage %d", static_cast<int>(stage));
-  static constexpr int versions[] = {330, 400, 410, 420, 430, 440, 450, 460};
-  bool known = false;
-  for (const int one : versions) known = known || one == version;
-  if (!known) return fail(PLD_ERROR_ARGUMENT, "pld_glsl: found version %d, expected 330 to 460 as GLSL has them", version);
+  if (const pld_status status = checkGlsl("pld_glsl", version); status != PLD_OK) return status;
   std::string& kept = seams_[stage];
-  kept = seamText(permutation_, stage, version, static_cast<int>(info_.uniform_binding), static_cast<int>(info_.texture_unit));
+  kept = seamText(permutation_, stage, version, {static_cast<int>(info_.uniform_binding), static_cast<int>(info_.texture_unit)});
   text = kept.c_str();
   return PLD_OK;
 }
@@ -193,8 +207,13 @@ pld_status pld_pass::connect(GLuint program) {
   GLint linked = GL_FALSE;
   if (gl.IsProgram(program)) gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
   if (!linked) return fail(PLD_ERROR_ARGUMENT, "pld_connect: found %u, expected a linked program of this context", program);
-  const GLuint block = gl.GetUniformBlockIndex(program, "PldFrame");
-  if (block != GL_INVALID_INDEX) gl.UniformBlockBinding(program, block, info_.uniform_binding);
+  const std::pair<const char*, GLuint> blocks[] = {{"PldFrame", info_.uniform_binding},
+                                                   {"PldShadowFrame", info_.uniform_binding},
+                                                   {"PldShadows", shadowInfo_.uniform_binding}};
+  for (const auto& [name, binding] : blocks) {
+    const GLuint block = gl.GetUniformBlockIndex(program, name);
+    if (block != GL_INVALID_INDEX) gl.UniformBlockBinding(program, block, binding);
+  }
   GLint current = 0;
   gl.GetIntegerv(GL_CURRENT_PROGRAM, &current);
   gl.UseProgram(program);
@@ -203,6 +222,9 @@ pld_status pld_pass::connect(GLuint program) {
     const GLint place = gl.GetUniformLocation(program, names[i]);
     if (place >= 0) gl.Uniform1i(place, static_cast<GLint>(info_.texture_unit) + i);
   }
-  gl.UseProgram(static_cast<GLuint>(current));
+  const GLint maps = gl.GetUniformLocation(program, "pldShadowMaps");
+  if (maps >= 0) gl.Uniform1i(maps, static_cast<GLint>(shadowInfo_.texture_unit));
+  // One that the host has deleted while it was current is gone now.
+  gl.UseProgram(current && gl.IsProgram(static_cast<GLuint>(current)) ? static_cast<GLuint>(current) : 0);
   return PLD_OK;
 }

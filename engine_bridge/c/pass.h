@@ -22,6 +22,10 @@ struct pld_pass {
   pld_status query(pld_value what, uint64_t& value);
   pld_status seam(pld_stage stage, int version, const char*& text);
   pld_status connect(GLuint program);
+  pld_status shadowResize(const pld_shadow_info* info);
+  pld_status shadowBegin(const pld_shadow_view& view);
+  pld_status shadowEnd();
+  pld_status shadowText(pld_shadow_text which, int version, const char*& text);
   void destroyObjects();
 
   bool isCurrent() const;
@@ -40,6 +44,16 @@ struct pld_pass {
 
   pld_status checkFrame(const pld_frame& frame, GLenum& depthAttachment);
   pld_status checkOrder(pld_stage stage);
+  pld_status checkGlsl(const char* call, int version);
+  pld_status checkShadowInfo(const pld_shadow_info& info);
+  pld_status checkShadowView(const pld_shadow_view& view, GLenum& depthAttachment);
+  pld_status makeShadows();
+  void setShadowTable(const pld_shadow_view& view);
+  void filterShadow(int face);
+  void releaseShadows();
+  bool shadowIsFiltered() const;
+  int shadowEdge() const;  // as looked up
+  int shadowChannels() const { return shadowInfo_.coloured ? 3 : 1; }
   void setFrame(const pld_frame& frame);
   void drawPlanarDepth(const pld_frame& frame);
   void openStage(pld_stage stage);
@@ -73,6 +87,18 @@ struct pld_pass {
   int width_ = 0, height_ = 0;
   char label_[64] = {};
   std::string seams_[kStages];
+
+  // Shadow maps: as drawn, between the two filters, and as they are looked up.
+  pld_shadow_info shadowInfo_{};
+  pellucid::c::Program shadowTexels_, shadowDown_;
+  GLuint shadowDrawn_[2] = {}, shadowAcross_[3] = {}, shadowMaps_ = 0, shadowTable_ = 0, shadowUniforms_ = 0;
+  GLuint casterFrame_ = 0, acrossFrame_ = 0, mapFrame_ = 0;
+  uint64_t shadowBytes_ = 0;
+  bool shadowOpen_ = false;
+  pld_shadow_view shadowView_{};
+  double shadowRows_ = 1.0;  // -1: NDC's y runs against the rows
+  GLenum shadowDepthAttachment_ = 0;
+  std::string shadowTexts_[2];
 
   Step step_ = Step::sizeless;
   pld_stage stage_ = PLD_STAGE_LAYERS;

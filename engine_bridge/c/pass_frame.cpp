@@ -26,6 +26,7 @@ constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pel
 }  // namespace
 
 pld_status pld_pass::checkOrder(pld_stage stage) {
+  if (shadowOpen_) return fail(PLD_ERROR_ORDER, "pld_begin: between pld_shadow_begin and pld_shadow_end");
   if (step_ == Step::sizeless) return fail(PLD_ERROR_ORDER, "pld_begin: before pld_resize");
   if (step_ == Step::open) return fail(PLD_ERROR_ORDER, "pld_begin: the last stage has not met its pld_end");
   if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LAYERS)
@@ -247,6 +248,7 @@ void pld_pass::drawPyramid() {
 }
 
 pld_status pld_pass::resolve(const pld_target& target) {
+  if (shadowOpen_) return fail(PLD_ERROR_ORDER, "pld_resolve: between pld_shadow_begin and pld_shadow_end");
   if (step_ != Step::drawn || stagesDone_ != stagesNeeded())
     return fail(PLD_ERROR_ORDER, "pld_resolve: before all stages of a frame have met their pld_end");
   if (target.struct_size != sizeof(pld_target))

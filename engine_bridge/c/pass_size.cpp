@@ -99,6 +99,7 @@ pld_status pld_pass::makeTextures(int width, int height) {
 
 pld_status pld_pass::resize(int width, int height) {
   if (step_ == Step::open) return fail(PLD_ERROR_ORDER, "pld_resize: between pld_begin and pld_end");
+  if (shadowOpen_) return fail(PLD_ERROR_ORDER, "pld_resize: between pld_shadow_begin and pld_shadow_end");
   GLint most = 0;
   gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   if (width < 1 || height < 1 || width > most || height > most)

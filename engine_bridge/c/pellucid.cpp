@@ -36,9 +36,10 @@ pld_status refuse(const pld_create_info& info, pld_status status, const char* te
 pld_status checkInfo(const pld_create_info& info) {
   char text[200];
   if (info.struct_size != sizeof(pld_create_info)) return PLD_ERROR_VERSION;  // its log may lie elsewhere
-  if ((info.version >> 10) != (static_cast<uint32_t>(PLD_VERSION) >> 10)) {
-    std::snprintf(text, sizeof(text), "pld_create: version: found %u.%u, expected %d.%d", info.version >> 20,
-                  (info.version >> 10) & 1023u, PLD_VERSION_MAJOR, PLD_VERSION_MINOR);
+  // Structures that have grown since keep the size by which they are known.
+  if (info.version >> 20 != PLD_VERSION_MAJOR || ((info.version >> 10) & 1023u) > PLD_VERSION_MINOR) {
+    std::snprintf(text, sizeof(text), "pld_create: version: found %u.%u, expected %d.0 to %d.%d", info.version >> 20,
+                  (info.version >> 10) & 1023u, PLD_VERSION_MAJOR, PLD_VERSION_MAJOR, PLD_VERSION_MINOR);
     return refuse(info, PLD_ERROR_VERSION, text);
   }
   if (!info.get_proc_address) return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: get_proc_address is null");
@@ -129,6 +130,26 @@ pld_status pld_glsl(pld_pass* pass, pld_stage stage, int32_t version, const char
 
 pld_status pld_connect(pld_pass* pass, uint32_t program) {
   return guarded(pass, "pld_connect", [&] { return pass->connect(program); });
+}
+
+pld_status pld_shadow_resize(pld_pass* pass, const pld_shadow_info* info) {
+  return guarded(pass, "pld_shadow_resize", [&] { return pass->shadowResize(info); });
+}
+
+pld_status pld_shadow_begin(pld_pass* pass, const pld_shadow_view* view) {
+  return guarded(pass, "pld_shadow_begin", [&] {
+    return view ? pass->shadowBegin(*view) : pass->fail(PLD_ERROR_ARGUMENT, "pld_shadow_begin: view is null");
+  });
+}
+
+pld_status pld_shadow_end(pld_pass* pass) {
+  return guarded(pass, "pld_shadow_end", [&] { return pass->shadowEnd(); });
+}
+
+pld_status pld_shadow_glsl(pld_pass* pass, pld_shadow_text which, int32_t version, const char** text) {
+  return guarded(pass, "pld_shadow_glsl", [&] {
+    return text ? pass->shadowText(which, version, *text) : pass->fail(PLD_ERROR_ARGUMENT, "pld_shadow_glsl: text is null");
+  });
 }
 
 pld_status pld_destroy(pld_pass** pass) {

@@ -33,10 +33,10 @@ void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::
       for (int x = 0; x < edge; ++x) texels[static_cast<std::size_t>(x)] = texelOf(band, channels, c, x, y);
       for (int x = 0; x < width; ++x) {
         glm::vec4 sum(0.0f);
-        const int middle = kShadowDivide * x + kShadowDivide / 2;
+        const int middle = shading::tentMiddle(x);
         for (int i = -kTentReach; i <= kTentReach; ++i)
           if (middle + i >= 0 && middle + i < edge)
-            sum += shading::shadowTent(i) * texels[static_cast<std::size_t>(middle + i)];
+            sum = shading::addToTent(sum, i, texels[static_cast<std::size_t>(middle + i)]);
         across[stride * static_cast<std::size_t>(y) + static_cast<std::size_t>(x * channels + c)] = sum;
       }
     }
@@ -45,10 +45,10 @@ void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::
     glm::vec4* row = out + stride * static_cast<std::size_t>(y);
     std::fill(row, row + stride, glm::vec4(0.0f));
     for (int j = -kTentReach; j <= kTentReach; ++j) {
-      const int from = kShadowDivide * y + kShadowDivide / 2 + j + kTentReach;
+      const int from = shading::tentMiddle(y) + j + kTentReach;
       if (from >= height) continue;
       const glm::vec4* drawn = &across[stride * static_cast<std::size_t>(from)];
-      for (std::size_t i = 0; i < stride; ++i) row[i] += shading::shadowTent(j) * drawn[i];
+      for (std::size_t i = 0; i < stride; ++i) row[i] = shading::addToTent(row[i], j, drawn[i]);
     }
   });
 }

@@ -7,8 +7,8 @@
 
 namespace pellucid::gl {
 
-constexpr int kTentReach = 7;     // texels on either side of a tent's middle
-constexpr int kShadowDivide = 4;  // prefiltered maps keep one texel of so many, in both dimensions
+constexpr int kTentReach = shading::PLD_SHADOW_TENT_REACH;
+constexpr int kShadowDivide = shading::PLD_SHADOW_DIVIDE;
 
 // Of a band as drawn: nearest depth and optical depth per channel, `steps` in alpha of `nearest` for one channel.
 struct DrawnBand {

@@ -7,6 +7,7 @@
 
 #include "engine_bridge/gl/shadow_draw.h"
 #include "engine_bridge/scene/blocks.h"
+#include "shaders/shadow_layout.h"
 
 namespace pellucid {
 namespace {
@@ -17,23 +18,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int kBandRows = 512;     // drawn at once, so that a map of any size takes as much device memory
 constexpr double kMargin = 16.0;   // texels as drawn: the tent's reach, and the texels that a lookup blends
 constexpr double kOpaqueBias = 2.0;  // texels of opaque maps
-// A slanted sheet spreads over the tent's depths, and must not shadow itself: the reach of the slab that it seems to be,
-// at 45 degrees, in half texels as drawn; and that of a sheet without spread, sqrt(3) of the least deviation.
-constexpr double kBias = 12.0;
-constexpr float kSlabReach = 1.75e-3f;
-
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// Texels of a map, and w, from NDC; `texel` of the map is `shrink` * drawn texel + shift.
-glm::dmat4 texelsFromNdc(int edge, double shrink, double shift) {
-  glm::dmat4 m(0.0);
-  m[0][0] = 0.5 * edge * shrink;
-  m[1][1] = -0.5 * edge * shrink;
-  m[3] = {0.5 * edge * shrink + shift, 0.5 * edge * shrink + shift, 0.0, 1.0};
-  // The last column multiplies w; NDC's z is not needed.
-  return m;
 }
 
 class MapMaker {
@@ -43,13 +29,13 @@ class MapMaker {
     filtered_ = settings.form == Form::variance || settings.form == Form::published;
   }
 
-  void light(const Light& light, std::uint32_t seed);
+  void light(const Light& light, std::uint32_t index);
 
   ShadowMaps maps;
   ShadowMapStatistics statistics;
 
  private:
-  shading::ShadowFace face(const LightView& view, int edge, double shrink, double shift, int channels);
+  shading::ShadowFace face(const LightView& view, int edge, const shading::ShadowGrid& grid, int channels);
   void transparentFace(const LightView& view, const LightViews& metric, std::uint32_t seed);
   void opaqueFace(const LightView& view, const LightViews& metric);
   glm::vec4* grow(std::size_t texels) {
@@ -65,27 +51,20 @@ class MapMaker {
   bool filtered_;
 };
 
-shading::ShadowFace MapMaker::face(const LightView& view, int edge, double shrink, double shift, int channels) {
+shading::ShadowFace MapMaker::face(const LightView& view, int edge, const shading::ShadowGrid& grid, int channels) {
   const Window all{0, 0, edge, edge};
   const glm::dmat4 clip = clipFromView(view.camera, all, all, {0.5, 0.5});
-  shading::ShadowFace face;
-  face.mapFromView = glm::mat4(texelsFromNdc(edge, shrink, shift) * clip * view.camera.viewFromWorld *
-                               glm::inverse(camera_.viewFromWorld));
-  const int kept = static_cast<int>(edge * shrink);
-  face.extent = {static_cast<int>(maps.texels.size()), kept, channels, 0};
-  // A hair more than the face's own, so that no direction falls between two.
-  const double inner = view.inner > 0.0 ? view.inner * edge * shrink + shift - 1e-3 * kept : 0.0;
-  face.inner = glm::vec4(inner, static_cast<double>(kept) + 2.0 * (view.inner > 0.0 ? shift : 0.0) - inner, 0.0, 0.0);
+  shading::ShadowFace face = shading::shadowFaceOf(clip * view.camera.viewFromWorld * glm::inverse(camera_.viewFromWorld),
+                                                   edge, grid, -1.0, view.inner);
+  face.extent.x = static_cast<int>(maps.texels.size());
+  face.extent.z = channels;
   return face;
 }
 
 void MapMaker::transparentFace(const LightView& view, const LightViews& metric, std::uint32_t seed) {
   const int edge = metric.faces.size() > 1 ? settings_.size / 2 : settings_.size;
   const int channels = drawer_.grey() ? 1 : 3;
-  const double shrink = filtered_ ? 1.0 / gl::kShadowDivide : 1.0;
-  // Texel X's tent has its middle at (4 X + 2) + 1/2 of the drawn texels.
-  const double shift = filtered_ ? 0.5 - (gl::kShadowDivide / 2 + 0.5) / gl::kShadowDivide : 0.0;
-  maps.faces.push_back(face(view, edge, shrink, shift, channels));
+  maps.faces.push_back(face(view, edge, shading::shadowGrid(filtered_), channels));
   drawer_.begin({view, metric.radial, metric.scale, metric.offset, edge, seed});
   for (int first = 0; first < edge; first += kBandRows) {
     const int rows = std::min(kBandRows, edge - first);
@@ -108,7 +87,7 @@ void MapMaker::transparentFace(const LightView& view, const LightViews& metric, 
 
 void MapMaker::opaqueFace(const LightView& view, const LightViews& metric) {
   const int edge = metric.faces.size() > 1 ? settings_.opaqueSize / 2 : settings_.opaqueSize;
-  maps.faces.push_back(face(view, edge, 1.0, 0.0, 1));
+  maps.faces.push_back(face(view, edge, {}, 1));
   drawer_.begin({view, metric.radial, metric.scale, metric.offset, edge, 0u});
   for (int first = 0; first < edge; first += kBandRows) {
     const auto start = Clock::now();
@@ -120,7 +99,7 @@ void MapMaker::opaqueFace(const LightView& view, const LightViews& metric) {
   }
 }
 
-void MapMaker::light(const Light& light, std::uint32_t seed) {
+void MapMaker::light(const Light& light, std::uint32_t index) {
   shading::ShadowLight block{};
   block.lookup = {settings_.form == Form::variance    ? shading::PLD_SHADOW_SLAB
                   : settings_.form == Form::published ? shading::PLD_SHADOW_CHEBYSHEV
@@ -162,14 +141,15 @@ void MapMaker::light(const Light& light, std::uint32_t seed) {
     for (int c = 0; c < 4; ++c)
       block.metric[c] = static_cast<float>(-metric.scale * ownFromView[c][2] + (c == 3 ? metric.offset : 0.0));
   block.faces[0] = static_cast<int>(maps.faces.size());
-  for (const LightView& view : views.faces) transparentFace(view, views, seed + static_cast<std::uint32_t>(maps.faces.size()));
+  for (const LightView& view : views.faces)
+    transparentFace(view, views, shading::mapSeedOf(settings_.seed, index, static_cast<std::uint32_t>(maps.faces.size())));
   block.faces[1] = static_cast<int>(maps.faces.size()) - block.faces[0];
   if (block.faces[1] > 0 && settings_.form != Form::published) {
     const LightView& view = views.faces[0];
     const double edge = views.faces.size() > 1 ? settings_.size / 2 : settings_.size;
-    const double texel = kBias / (std::min(view.camera.focal.x, view.camera.focal.y) * edge);
-    (metric.radial ? block.bias.w : block.bias.z) = static_cast<float>(texel * (metric.radial ? 1.0 : metric.scale));
-    block.bias.z += kSlabReach;
+    const glm::vec2 bias = shading::shadowBias(metric.radial, std::min(view.camera.focal.x, view.camera.focal.y), edge, metric.scale);
+    block.bias.z = bias.x;
+    block.bias.w = bias.y;
   }
   block.faces[2] = static_cast<int>(maps.faces.size());
   opaqueViews.scale = metric.scale;
@@ -199,7 +179,7 @@ ShadowMaps renderShadowMaps(GlContext&, const Scene& scene, const Camera& camera
   MapMaker maker(scene, camera, gbuffer, settings);
   std::uint32_t index = 0;
   for (const Light& light : scene.lights)
-    maker.light(light, shading::hashOf(settings.seed ^ shading::hashOf(0x5badu + index++)));
+    maker.light(light, index++);
   if (statistics) {
     *statistics = maker.statistics;
     statistics->faces = maker.maps.faces.size();

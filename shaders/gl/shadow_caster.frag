@@ -3,17 +3,12 @@
 #include "gl/material.glsl"
 #include "gl/exact_cut.glsl"
 #include "gl/shadow_frame.glsl"
-#include "shared/shadow_map.glsl"
+#include "gl/caster_output.glsl"
 #ifdef POINTS
 #include "shared/particle.glsl"
 #endif
 layout(location = 4) flat in uint triangleNumber;  // within the primitive
 uniform uint instanceIdentity;
-
-layout(location = 0) out vec4 nearest;  // MIN; alpha adds
-#ifndef GREY
-layout(location = 1) out vec4 steps;    // adds
-#endif
 
 void main() {
   Surface surface = surfaceHere();
@@ -35,15 +30,5 @@ void main() {
 
   uvec2 place = uvec2(texel) + texels.xy;
   uint key = casterKeyOf(identityOf(instanceIdentity, triangleNumber), texels.w);
-  uint xi = texels.z != 0u ? naiveXi(place, key) : stratifiedXi(place, key);
-  nearest.r = casts(rho.r, xi) ? depth : PLD_SHADOW_NOTHING;
-  nearest.g = casts(rho.g, xi) ? depth : PLD_SHADOW_NOTHING;
-  nearest.b = casts(rho.b, xi) ? depth : PLD_SHADOW_NOTHING;
-  uint rounding = naiveXi(place, hashOf(key));
-#ifdef GREY
-  nearest.a = steppedDepth(rho.r, rounding);
-#else
-  nearest.a = 0.0f;
-  steps = vec4(steppedDepth(rho.r, rounding), steppedDepth(rho.g, rounding), steppedDepth(rho.b, rounding), 0.0f);
-#endif
+  writeCaster(rho, depth, place, key, texels.z != 0u);
 }

@@ -5,6 +5,7 @@
 
 #include "tests/bridge/gl_state.h"
 #include "tests/bridge/host.h"
+#include "tests/bridge/shadow_casters.h"
 
 namespace pellucid::test {
 namespace {
@@ -150,6 +151,62 @@ TEST(BridgeState, EveryCallLeavesGlAsItFoundIt) {
     watch.unchanged("pld_destroy");
     glPopDebugGroup();  // the driver keeps the names of those that are open for ever
     std::printf("state: %zu pieces of state equal after each of %d steps\n", watch.before.size(), watch.calls);
+  }
+}
+
+// The same for shadow maps.
+TEST(BridgeState, ShadowCallsLeaveGlAsTheyFoundIt) {
+  for (const bool coloured : {false, true}) {
+    GlContext context;
+    Host host(40, 30);
+    const GLuint device = makeTexture(GL_DEPTH24_STENCIL8, 64, 64), small = makeTexture(GL_DEPTH_COMPONENT32F, 32, 64);
+    setUnlikelyState();
+    pld_create_info create = host.info();
+    create.flags = kFlags;
+    pld_pass* pass = host.create(create);
+    ASSERT_NE(pass, nullptr);
+    Watch watch;
+    pld_shadow_info info = shadowInfo(coloured ? PLD_SHADOW_VARIANCE : PLD_SHADOW_CORRECTED, 64, 2, 7, coloured);
+    info.size = 65;
+    EXPECT_EQ(pld_shadow_resize(pass, &info), PLD_ERROR_SIZE);
+    watch.unchanged("pld_shadow_resize that fails");
+    info.size = 64;
+    ASSERT_EQ(pld_shadow_resize(pass, &info), PLD_OK) << pld_message(pass);
+    watch.unchanged("pld_shadow_resize");
+    pld_shadow_view view = plainShadowView();
+    view.depth_texture = small;
+    EXPECT_EQ(pld_shadow_begin(pass, &view), PLD_ERROR_SIZE);
+    EXPECT_EQ(pld_shadow_end(pass), PLD_ERROR_ORDER);
+    watch.unchanged("pld_shadow_begin that fails");
+    for (const GLuint depth : {0u, device}) {
+      view.depth_texture = depth;
+      ASSERT_EQ(pld_shadow_begin(pass, &view), PLD_OK) << pld_message(pass);
+      setShape(false);
+      const char* seam = nullptr;
+      ASSERT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_CASTER, 330, &seam), PLD_OK) << pld_message(pass);
+      const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam + kPlainCaster);
+      ASSERT_EQ(pld_connect(pass, program), PLD_OK);
+      glUseProgram(program);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+      const pld_frame frame = host.frame();
+      EXPECT_EQ(pld_begin(pass, PLD_STAGE_LAYERS, &frame), PLD_ERROR_ORDER);
+      EXPECT_EQ(pld_shadow_begin(pass, &view), PLD_ERROR_ORDER);
+      setShape(true);
+      ASSERT_EQ(pld_shadow_end(pass), PLD_OK) << pld_message(pass);
+      watch.unchanged("pld_shadow_begin, draws, pld_shadow_end");
+    }
+    const char* lookup = nullptr;
+    EXPECT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_LOOKUP, 330, &lookup), PLD_OK);
+    const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + lookup +
+                                                              "out vec4 c;\nvoid main() { c = vec4(pldShadow(0, gl_FragCoord.xyz), 1.0); }\n");
+    EXPECT_EQ(pld_connect(pass, program), PLD_OK);
+    watch.unchanged("pld_shadow_glsl, pld_connect");
+    EXPECT_EQ(pld_shadow_resize(pass, nullptr), PLD_OK);
+    watch.unchanged("pld_shadow_resize to nothing");
+    EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+    watch.unchanged("pld_destroy");
+    glPopDebugGroup();
+    std::printf("state: %zu pieces of state equal after each of %d steps with shadow maps\n", watch.before.size(), watch.calls);
   }
 }
 

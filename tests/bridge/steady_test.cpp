@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/bridge/host.h"
+#include "tests/bridge/shadow_casters.h"
 // After epoxy, which declares the same.
 #include "engine_bridge/c/gl_functions.h"
 
@@ -122,8 +123,11 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     info.tier = kind.tier;
     info.features = kind.features;
     info.flags = PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS;
+    calls.clear();
     pld_pass* pass = host.create(info);
     ASSERT_NE(pass, nullptr);
+    const pld_shadow_info maps = shadowInfo(kind.tier == PLD_TIER_HALF ? PLD_SHADOW_NAIVE : PLD_SHADOW_VARIANCE, 32, 1, 1, kind.features != 0);
+    ASSERT_EQ(pld_shadow_resize(pass, &maps), PLD_OK) << pld_message(pass);
     int made = 0, total = 0;
     for (const auto& [name, count] : calls) made += makes(name) ? count : 0;
     EXPECT_GT(made, 10);  // the counter counts
@@ -136,6 +140,10 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     for (int number = 0; number < 20; ++number) {
       pld_frame frame = host.frame();
       frame.width = 48 - number;  // the size of a frame may change
+      const pld_shadow_view shadow = plainShadowView();
+      ASSERT_EQ(inside([&] { return pld_shadow_begin(pass, &shadow); }), PLD_OK) << pld_message(pass);
+      ASSERT_EQ(inside([&] { return pld_shadow_end(pass); }), PLD_OK);
+      ASSERT_EQ(inside([&] { return pld_shadow_resize(pass, &maps); }), PLD_OK);  // to what it is
       for (const pld_stage stage : kind.stages) {
         ASSERT_EQ(inside([&] { return pld_begin(pass, stage, &frame); }), PLD_OK) << pld_message(pass);
         ASSERT_EQ(inside([&] { return pld_end(pass); }), PLD_OK);

@@ -8,7 +8,7 @@
    * A call that fails changes no GL state and says why through the log and pld_message(). GL errors that are pending
      when a call is made stay pending, but for pld_create() and pld_resize(), which report them to the log and clear them.
    * Textures are the host's 2D textures, one sample a pixel, level 0. Rows may run up or down (pld_rows).
-   * After pld_resize() no memory is allocated and no GL object is made. */
+   * After pld_resize() and pld_shadow_resize() no memory is allocated and no GL object is made. */
 #ifndef PELLUCID_H
 #define PELLUCID_H
 
@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define PLD_VERSION_MAJOR 0
-#define PLD_VERSION_MINOR 1
+#define PLD_VERSION_MINOR 2 /* 0.2: shadow maps. A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
 
@@ -194,8 +194,60 @@ typedef PLD_ENUM(pld_value) {
   PLD_VALUE_FIRST_PLANE = 4, /* + i: the GL name of plane i, to look at; 0 where draw buffer i is not used; i < 8 */
   PLD_VALUE_NS_BEGIN = 16,   /* nanoseconds on the device, of the newest frame that is known; PLD_FLAG_TIMERS */
   PLD_VALUE_NS_DRAWS = 17,   /* from the end of pld_begin() to pld_end(), all stages */
-  PLD_VALUE_NS_RESOLVE = 18
+  PLD_VALUE_NS_RESOLVE = 18,
+  PLD_VALUE_SHADOW_TEXTURE = 24, /* GL names, 0 before pld_shadow_resize(): the GL_TEXTURE_2D_ARRAY of the maps */
+  PLD_VALUE_SHADOW_BUFFER = 25,  /* the uniform buffer of their table */
+  PLD_VALUE_SHADOW_BYTES = 26    /* of all textures of the maps */
 } pld_value;
+
+/* Shadows of transparent things: a coloured stochastic shadow map for every light, McGuire and Mara 2017 section 5. */
+typedef PLD_ENUM(pld_shadow_form) {
+  PLD_SHADOW_VARIANCE = 0,   /* prefiltered, a quarter of the size is kept; exact in what hides: no noise on opaque receivers */
+  PLD_SHADOW_PUBLISHED = 1,  /* prefiltered as the paper has it: a coin a texel */
+  PLD_SHADOW_NAIVE = 2,      /* Enderton et al. 2010: squares of texels, each before or behind; a coin a texel */
+  PLD_SHADOW_STRATIFIED = 3, /* coins stratified over squares of texels */
+  PLD_SHADOW_CORRECTED = 4   /* and scaled to what exactly hides */
+} pld_shadow_form;
+
+typedef struct pld_shadow_info {
+  uint32_t struct_size; /* sizeof(pld_shadow_info) */
+  pld_shadow_form form;
+  int32_t size;         /* texels along an edge as drawn, 16 to 16384, a multiple of 4 */
+  int32_t lights;       /* 1 to 16: pldShadow() knows them as 0 to lights - 1 */
+  int32_t faces;        /* 1 to 96, of all lights together: a sun or a spot takes one, a point light six */
+  int32_t coloured;     /* 0: no caster transmits colour, and one channel serves all */
+  int32_t closer_edge;  /* 1 to 16 texels, of the square that the forms 2 to 4 compare; 4 */
+  uint32_t seed;
+  uint32_t uniform_binding; /* where the host binds PLD_VALUE_SHADOW_BUFFER and _TEXTURE while it draws with */
+  uint32_t texture_unit;    /* pldShadow(): other places than those of pld_create_info */
+} pld_shadow_info;
+
+typedef PLD_ENUM(pld_light) {
+  PLD_LIGHT_DIRECTIONAL = 0,
+  PLD_LIGHT_LOCAL = 1 /* a spot or a point, at the origin of its view space */
+} pld_light;
+
+/* One face of one light, as it looks at its casters. */
+typedef struct pld_shadow_view {
+  uint32_t struct_size; /* sizeof(pld_shadow_view) */
+  pld_light kind;
+  int32_t light;             /* 0 to pld_shadow_info.lights - 1 */
+  int32_t first_face, faces; /* the light's of pld_shadow_info.faces; faces is 1 or, for a local light, 6 */
+  int32_t face;              /* the one that is drawn, 0 to faces - 1; all are drawn before the light is looked up */
+  float light_from_scene[16]; /* by columns, turns and shifts alone: from the space in which pldShadow() is asked, the
+                                 camera's view or the world, to this face's view space, which looks down -z */
+  float projection[16];       /* clip from that view space: orthographic or, local, perspective with w = -z. Of six
+                                 faces all are square and a little wider than 90 degrees; a face owns its 90 */
+  float near_depth, far_depth; /* where casters lie, scene units, near < far: along -z, of a local light far_depth is the
+                                  greatest distance and near_depth is not used */
+  uint32_t depth_texture;      /* 0, or what is opaque as this view sees it, depth of size x size: casters behind it, by
+                                  LEQUAL or, with PLD_DEPTH_REVERSED, GEQUAL, are left out */
+} pld_shadow_view;
+
+typedef PLD_ENUM(pld_shadow_text) {
+  PLD_SHADOW_TEXT_CASTER = 0, /* pldWriteCaster(), for what is drawn between pld_shadow_begin() and pld_shadow_end() */
+  PLD_SHADOW_TEXT_LOOKUP = 1  /* pldShadow() and pldShadowOnOpaque(), for the light pass and for layers */
+} pld_shadow_text;
 
 /* The version of the library, as PLD_VERSION. */
 PLD_API uint32_t pld_version(void);
@@ -219,8 +271,19 @@ PLD_API pld_status pld_destroy(pld_pass** pass);
 /* The GLSL that a material's fragment shader holds for a stage, after its #version line: pldWriteFragment() and the
    outputs. For GLSL `version` 330 to 460. The text is the pass's and lives until it is asked for again or destroyed. */
 PLD_API pld_status pld_glsl(pld_pass* pass, pld_stage stage, int32_t version, const char** text);
-/* Connects the seam's uniform block and samplers of a linked program. Needed once per program below GLSL 4.20. */
+/* Connects the uniform blocks and samplers of all texts that a linked program holds. Needed once per program below GLSL
+   4.20; of PLD_SHADOW_TEXT_LOOKUP after pld_shadow_resize(). */
 PLD_API pld_status pld_connect(pld_pass* pass, uint32_t program);
+
+/* Room for shadow maps; null gives it back. The same info again keeps the maps; any other loses them. */
+PLD_API pld_status pld_shadow_resize(pld_pass* pass, const pld_shadow_info* info);
+/* As pld_begin() and pld_end(), for the casters of one face, in any order; outside of stages. Casters are
+   drawn with the clip origin that GL has at pld_shadow_begin(). */
+PLD_API pld_status pld_shadow_begin(pld_pass* pass, const pld_shadow_view* view);
+/* Filters the face, and puts back the state that pld_shadow_begin() found. */
+PLD_API pld_status pld_shadow_end(pld_pass* pass);
+/* As pld_glsl(). */
+PLD_API pld_status pld_shadow_glsl(pld_pass* pass, pld_shadow_text which, int32_t version, const char** text);
 
 /* What the last call that failed on this pass said: one sentence; "" when none did. Lives until the next call. */
 PLD_API const char* pld_message(const pld_pass* pass);
