@@ -110,6 +110,7 @@ void composite(const CompositeFlags& flags) {
   }
 
   settings.pass.shadows = shadows.maps;
+  settings.pass.shadowRays = stages.time("shadows", [&] { return surfaceLight(shadows, *shot); });
 
   std::unique_ptr<TransparentPass> pass;
   if (shot->hasScene) {
@@ -144,6 +145,8 @@ void composite(const CompositeFlags& flags) {
   if (flags.method.isAuto()) fitShotWeight(pass.get(), shot->deep, gbuffer, settings.pass, stages);
   RenderCounts counts;
   const Veil veil = renderVeil(pass.get(), shot->deep, settings, gbuffer, shot->camera, stages, counts);
+  if (counts.shadowRays)
+    spdlog::info("light on transparent things: {} shadow rays in {:.2f} s", counts.shadowRays, counts.shadowSeconds);
   Picture picture = stages.time("compose", [&] { return compose(veil, gbuffer); });
   for (std::size_t i = 0; i < shadows.touched.size(); ++i) picture.touched[i] |= shadows.touched[i];
 

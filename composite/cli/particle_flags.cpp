@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine_bridge/scene/blocks.h"
 #include "engine_bridge/scene/particle_grid.h"
 
 namespace pellucid::cli {
@@ -13,16 +12,16 @@ namespace {
 
 constexpr int kParticleCells = 128;  // of their density, along the longest edge
 
-bool isParticle(const Primitive& primitive, const Material& material) {
-  return material.transparent() && (primitive.points || material.billboard);
-}
-
 bool staysInFiles(const Scene& scene) {
   return std::any_of(scene.primitives.begin(), scene.primitives.end(),
                      [](const Primitive& primitive) { return primitive.streamed && !primitive.points; });
 }
 
 }  // namespace
+
+bool isParticle(const Primitive& primitive, const Material& material) {
+  return material.transparent() && (primitive.points || material.billboard);
+}
 
 ParticleShadows::ParticleShadows(const Shot& shot) : shot_(shot) {
   const auto grid = particleGrid(shot.scene, kParticleCells);
@@ -41,10 +40,14 @@ void ParticleShadows::dim(std::size_t light, Image<glm::vec3>& visibility) const
       const double z = static_cast<double>(gbuffer.viewZ.at(x, y));
       if (!std::isfinite(z)) continue;
       const glm::dvec2 at(rays.offset + rays.scale * glm::vec2(static_cast<float>(x), static_cast<float>(y)));
-      const float depth = gridDepth(*particles_, block, glm::dvec3(rays.orthographic ? at : at * z, -z), step_);
-      if (depth > 0.0f) visibility.at(x, y) *= std::exp(-depth);
+      visibility.at(x, y) *= passed(block, glm::dvec3(rays.orthographic ? at : at * z, -z));
     }
   });
+}
+
+float ParticleShadows::passed(const PunctualLight& light, const glm::dvec3& point) const {
+  const float depth = particles_ ? gridDepth(*particles_, light, point, step_) : 0.0f;
+  return depth > 0.0f ? std::exp(-depth) : 1.0f;
 }
 
 Air::Air(const Shot& shot, std::shared_ptr<const ShadowMaps> maps, const std::vector<std::string>& paths,

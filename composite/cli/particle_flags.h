@@ -8,9 +8,13 @@
 
 #include "composite/cli/shot.h"
 #include "engine_bridge/embree/air_shadows.h"
+#include "engine_bridge/scene/blocks.h"
 #include "gbuffer/shadow_maps.h"
 
 namespace pellucid::cli {
+
+// Whether a primitive's triangles are particles, which rays do not meet.
+bool isParticle(const Primitive& primitive, const Material& material);
 
 // How much of a light of the shot reaches a point: by shadow maps where they were drawn, else by rays, and through the
 // particles, which rays do not meet.
@@ -46,6 +50,8 @@ class ParticleShadows {
  public:
   explicit ParticleShadows(const Shot& shot);
   void dim(std::size_t light, Image<glm::vec3>& visibility) const;
+  // At one point, view space. [0,1]
+  float passed(const PunctualLight& light, const glm::dvec3& point) const;
 
  private:
   const Shot& shot_;

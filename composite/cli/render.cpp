@@ -174,6 +174,8 @@ Veil sampleOnDevice(const RenderSettings& settings, const PassSettings& sample, 
   statistics.tiles = done.bands;
   statistics.passes = done.passes;
   statistics.bitsPerPixel = stochasticBits(chosen);
+  statistics.shadowRays = done.shadowRays;
+  statistics.shadowSeconds = done.shadowSeconds;
   return veil;
 }
 
@@ -200,6 +202,8 @@ void addStatistics(const PassStatistics& statistics, RenderCounts& counts) {
   counts.passes = statistics.passes;
   counts.pruned = statistics.pruned;
   counts.clamps += statistics.clamps;
+  counts.shadowRays += statistics.shadowRays;
+  counts.shadowSeconds += statistics.shadowSeconds;
 }
 
 Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const RenderSettings& settings,

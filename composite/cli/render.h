@@ -35,6 +35,8 @@ struct RenderCounts {
   ToleranceCounts tolerance = {};
   int bitsPerPixel = 0, solidBits = 0, passes = 0;
   PublishedClamps clamps = {};
+  std::size_t shadowRays = 0;  // of all passes
+  double shadowSeconds = 0;
   std::vector<std::string> pruned = {};
 };
 

@@ -10,7 +10,7 @@
 #include "composite/cli/particle_flags.h"
 #include "composite/shadow_views.h"
 #include "composite/shadows.h"
-#include "engine_bridge/embree/shadow_rays.h"
+#include "engine_bridge/embree/surface_shadows.h"
 #include "engine_bridge/gl/shadow_pass.h"
 #include "engine_bridge/scene/blocks.h"
 #include "engine_bridge/scene/opaque_planes.h"
@@ -129,8 +129,8 @@ ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
 
 void ShadowFlags::addTo(CLI::App& verb) {
   verb.add_option("--shadows", shadows,
-                  "Shadows of transparent things on the opaque picture, from the glTF's punctual lights; exact: by rays; "
-                  "stochastic: by prefiltered maps, and on transparent things too; stochastic:published as printed; stochastic:naive, stratified, "
+                  "Shadows of transparent things on the opaque picture and on each other, from the glTF's punctual lights; exact: by "
+                  "rays, one for each light and fragment; stochastic: by prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
                   "corrected: maps without a filter, percentage closer")
       ->check(CLI::IsMember({"off", "exact", "stochastic", "stochastic:published", "stochastic:naive",
                              "stochastic:stratified", "stochastic:corrected"}))
@@ -185,12 +185,12 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std:
                      [&, &wantedName = name](std::size_t i) { return shot.scene.lights[i].name == wantedName; }))
       throw MeaningError(fmt::format("--light: found no light '{}' in the glTF, expected one of {}", name, names));
 
-  std::optional<ShadowRays> rays;
   std::optional<ParticleShadows> particles;
   if (flags.exact())
-    rays.emplace(shot.scene, shot.camera);
+    result.rays = std::make_shared<const ShadowRays>(shot.scene, shot.camera);
   else
     result.maps = drawMaps(flags, shot, seed, device());
+  const ShadowRays* rays = result.rays.get();
   if (rays) particles.emplace(shot);
   if (!flags.views.empty()) writeViews(flags.views, *result.maps, shot.scene.lights);
   std::vector<Image<glm::vec3>> visibility, layers;
@@ -239,6 +239,23 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std:
   if (counts.nonFinite > 0)
     say({fmt::format("{}: {} pixels with light that is not finite keep it, unshadowed", path, counts.nonFinite)});
   return result;
+}
+
+std::shared_ptr<const SurfaceVisibility> surfaceLight(const ShadowResult& shadows, const Shot& shot) {
+  if (!shadows.rays || !shot.hasScene) return nullptr;
+  const bool lit = std::any_of(shot.scene.primitives.begin(), shot.scene.primitives.end(), [&](const Primitive& each) {
+    const Material& material = shot.scene.materials[static_cast<std::size_t>(each.material)];
+    return material.transparent() && !material.unlit && !isParticle(each, material);
+  });
+  if (!lit) return nullptr;
+  const SurfaceVisibility surfaces = surfaceShadows(shot.scene, shot.camera, shot.opaque.gbuffer, shadows.rays);
+  auto particles = std::make_shared<const ParticleShadows>(shot);
+  const std::vector<PunctualLight> lights = lightBlocks(shot.scene.lights, shot.camera);
+  return std::make_shared<const SurfaceVisibility>(
+      [surfaces, particles, lights](std::size_t light, const glm::dvec3& point, std::uint32_t identity) {
+        const glm::vec3 passed = surfaces(light, point, identity);
+        return passed == glm::vec3(0.0f) ? passed : passed * particles->passed(lights[light], point);
+      });
 }
 
 }  // namespace pellucid::cli

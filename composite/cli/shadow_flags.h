@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "composite/cli/shot.h"
+#include "engine_bridge/embree/shadow_rays.h"
 #include "gbuffer/shadow_maps.h"
 
 namespace pellucid::cli {
@@ -32,6 +33,7 @@ struct ShadowResult {
   Image<std::uint8_t> touched;     // opaque pixels that changed; empty with --shadows off
   std::vector<ExtraLayer> layers;  // `shadow`, where no layer of a light was there to dim
   std::shared_ptr<const ShadowMaps> maps;  // null unless shadows are by maps
+  std::shared_ptr<const ShadowRays> rays;  // null unless they are exact
 };
 
 // Dims the beauty of `shot`. Says on stderr what it could not know. Throws MeaningError for a light or layer that is
@@ -41,5 +43,9 @@ struct ShadowResult {
 //   device   makes the GL context that maps are drawn with
 ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std::uint32_t seed,
                          const std::function<GlContext&()>& device);
+
+// What rays say of the light on the shot's transparent surfaces, past surfaces and particles. Null unless shadows are
+// exact and some such surface is lit. The arguments must outlive it.
+std::shared_ptr<const SurfaceVisibility> surfaceLight(const ShadowResult& shadows, const Shot& shot);
 
 }  // namespace pellucid::cli

@@ -113,7 +113,7 @@ std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, cons
     for (std::size_t i = 0; i < lights.size(); ++i) {
       shading::Arriving arriving = shading::arrivingAt(lights[i], position);
       if (shadowRays)
-        arriving.irradiance *= shadowRays->visibility(lightIndex[i], glm::dvec3(position));
+        arriving.irradiance *= shadowRays->visibilityFrom(shading::identityOf(instance.identity, crossing.triangle), lightIndex[i], glm::dvec3(position));
       else if (settings.shadows)
         arriving.irradiance *= settings.shadows->visibility(lightIndex[i], position);
       reflected += shading::reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;

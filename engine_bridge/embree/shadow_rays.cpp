@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "engine_bridge/embree/sampling.h"
 #include "engine_bridge/embree/surface_sampler.h"
@@ -36,7 +37,8 @@ struct ShadowRays::Impl {
     for (const Material& material : scene.materials) eta.push_back(materialBlock(material).scattering.z);
   }
   glm::vec3 density(const Crossing& crossing, const glm::vec3& toLight) const;
-  glm::vec3 visibility(std::size_t light, const glm::dvec3& point, std::vector<Crossing>& crossings) const;
+  glm::vec3 visibility(std::size_t light, const glm::dvec3& point, std::vector<Crossing>& crossings,
+                       std::optional<std::uint32_t> from = std::nullopt) const;
 };
 
 glm::vec3 ShadowRays::Impl::density(const Crossing& crossing, const glm::vec3& toLight) const {
@@ -56,7 +58,8 @@ glm::vec3 ShadowRays::Impl::density(const Crossing& crossing, const glm::vec3& t
 }
 
 glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& point,
-                                       std::vector<Crossing>& crossings) const {
+                                       std::vector<Crossing>& crossings,
+                                       std::optional<std::uint32_t> from) const {
   const PunctualLight& block = lights[light];
   const shading::Arriving arriving = shading::arrivingAt(block, glm::vec3(point));
   if (arriving.irradiance == glm::vec3(0.0f)) return glm::vec3(1.0f);
@@ -67,6 +70,10 @@ glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& poin
   const double lift = kLift * std::max({size.x, size.y, size.z}) / metres;
   crossings.clear();
   traced.crossAny(point + lift * path, path, directional ? kInfinity : 1.0 - lift, crossings);
+  if (from)
+    std::erase_if(crossings, [&](const Crossing& crossing) {
+      return shading::identityOf(scene.instances[crossing.instance].identity, crossing.triangle) == *from;
+    });
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
   });
@@ -94,6 +101,11 @@ ShadowRays::~ShadowRays() = default;
 glm::vec3 ShadowRays::visibility(std::size_t light, const glm::dvec3& point) const {
   std::vector<Crossing> crossings;
   return impl_->visibility(light, point, crossings);
+}
+
+glm::vec3 ShadowRays::visibilityFrom(std::uint32_t identity, std::size_t light, const glm::dvec3& point) const {
+  thread_local std::vector<Crossing> crossings;
+  return impl_->visibility(light, point, crossings, identity);
 }
 
 Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffer, int samples) const {

@@ -21,6 +21,9 @@ class ShadowRays {
   //   light  index into Scene::lights
   //   point  view space, metres
   glm::vec3 visibility(std::size_t light, const glm::dvec3& point) const;
+  // The same of a point on a transparent triangle, which is passed over.
+  //   identity  of the triangle, as Fragment::identity
+  glm::vec3 visibilityFrom(std::uint32_t identity, std::size_t light, const glm::dvec3& point) const;
 
   // The same for every pixel of a G-buffer, at the mean of `samples` positions in it: 1 is its centre. Between depths
   // of one surface the position follows its plane. 1 where nothing was hit. The same bits for every number of threads.

@@ -31,6 +31,9 @@ struct TransparentPass::Impl {
     statistics.chunks = renderer.geometry().chunks();
     statistics.tiles = tiles;
     statistics.fragments = fragments;
+    const gl::ShadowRayTable::Counts rays = renderer.takeShadowRayCounts();
+    statistics.shadowRays = rays.rays;
+    statistics.shadowSeconds = rays.seconds;
     statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 };

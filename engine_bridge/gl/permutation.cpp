@@ -14,6 +14,8 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("UNLIT", material.unlit);
   define("LIGHTS", lit && frame.lights);
   define("SHADOWS", lit && frame.lights && frame.shadows);
+  const bool particle = lit && (points || material.billboard);
+  define("SHADOW_RAYS", lit && !particle && frame.lights && frame.shadowRays);
   define("SURROUNDINGS", lit && frame.surroundings);
   define("ENVIRONMENT", lit && frame.environment);
   define("VERTEX_COLOUR", vertexColours);
@@ -32,7 +34,6 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("THICKNESS_TEXTURE", transmits && hasVolume(material) && material.thicknessTexture.texture >= 0);
   define("POINTS", points);
   define("SOFT", material.softness > 0.0f && !points);
-  const bool particle = lit && (points || material.billboard);
   define("PARTICLE", particle);
   define("LIGHT_VOLUME", particle && frame.lights && frame.lightVolume);
   const bool bends = frame.refracts && (refracts(material) || !frame.prune);

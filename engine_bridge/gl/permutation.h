@@ -27,6 +27,7 @@ struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;
   bool lights = false, surroundings = false;
   bool shadows = false;                     // there are maps of what is in the lights' way
+  bool shadowRays = false;                  // or rays have found it for every fragment
   bool environment = false;                 // the surroundings are a picture
   bool solids = false;                      // there is a solid plane to test against
   bool grey = false;                        // no material transmits colour: one opacity for all channels

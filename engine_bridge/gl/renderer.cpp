@@ -4,9 +4,11 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "engine_bridge/gl/fragment_lists.h"
 #include "engine_bridge/gl/solidity.h"
 #include "engine_bridge/scene/foliage.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/view_point.h"
 
 namespace pellucid::gl {
 namespace {
@@ -126,7 +128,8 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.probes = settings.probeCell > 1;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
-  features_.shadows = features_.lights && settings.shadows != nullptr;
+  features_.shadowRays = features_.lights && settings.shadowRays != nullptr;
+  features_.shadows = features_.lights && settings.shadows != nullptr && !features_.shadowRays;
   features_.environment = settings.environment != nullptr;
   features_.surroundings = !features_.environment && settings.surroundings != glm::vec3(0.0f);
   features_.lightVolume = settings.particleLight != nullptr;
@@ -155,6 +158,7 @@ bool Renderer::wouldScatter(const PassSettings& settings) const {
 
 void Renderer::begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
   prepare(superTile, settings, geometryBytes);
+  if (features_.shadowRays) traceShadows(superTile);
   drawSolids();
 }
 
@@ -180,16 +184,20 @@ void Renderer::uploadOccluders(const Window& superTile) {
   glBindSampler(7, 0);
 }
 
-void Renderer::prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
-  settings_ = settings;
-  geometryBytes_ = geometryBytes;
-  chooseFeatures(settings);
+void Renderer::describeSurfaces() {
   for (std::size_t i = 0; i < shaders_.size(); ++i) {
     shaders_[i].surface = surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
                                          shaders_[i].vertexColours, features_, shaders_[i].infers,
                                          scene_.primitives[i].points);
     std::fill(std::begin(shaders_[i].programs), std::end(shaders_[i].programs), nullptr);
   }
+}
+
+void Renderer::prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
+  settings_ = settings;
+  geometryBytes_ = geometryBytes;
+  chooseFeatures(settings);
+  describeSurfaces();
 
   if (!targets_ || targets_->width() != superTile.width() || targets_->height() != superTile.height())
     targets_.emplace(superTile.width(), superTile.height());
@@ -271,6 +279,27 @@ void Renderer::uploadShadows() {
   shadows_->bind();
 }
 
+// Lists what is lit, without light, and has rays say what arrives there.
+void Renderer::traceShadows(const Window& superTile) {
+  const FrameFeatures whole = features_;
+  features_.lights = features_.shadowRays = features_.surroundings = features_.environment = false;
+  features_.solids = false;  // they are lit as well, and what they hide is not known yet
+  features_.refracts = features_.diffuses = features_.disperses = features_.occludes = false;
+  tracing_ = true;
+  describeSurfaces();
+  rayTable_.begin(superTile.width(), superTile.height(), lights_);
+  const glm::dvec2 origin = glm::dvec2(superTile.x0, superTile.y0) + settings_.sample - 0.5;
+  listFragments(*this, settings_.budgetBytes / 2, [&](FragmentLists& lists, const Window& band) {
+    rayTable_.add(lists, band, *settings_.shadowRays, [&](int x, int y, float z) {
+      return viewPoint(*gbuffer_, camera_, origin + glm::dvec2(x, y), static_cast<double>(z));
+    });
+  });
+  tracing_ = false;
+  features_ = whole;
+  describeSurfaces();
+  rayCounts_ += rayTable_.finish();
+}
+
 void Renderer::uploadFrame() {
   glNamedBufferData(frameBuffer_.name(), sizeof(frame_), &frame_, GL_DYNAMIC_DRAW);
 }
@@ -315,6 +344,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     if (output == Output::rims && !shaders_[static_cast<std::size_t>(instance.primitive)].infers) continue;
     const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
     if (!takes(settings_.layers, material)) continue;
+    if (tracing_ && (material.unlit || material.billboard || primitive.points)) continue;
     const Placed& placed = placed_[one.instance];
     const glm::mat4 viewFromObject(placed.viewFromObject);
     const Program& wanted = programFor(instance.primitive, output);

@@ -2,6 +2,7 @@
 // have in common. Owns and restores no state of others: the context is ours.
 #pragma once
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine_bridge/gl/blocks.h"
@@ -10,6 +11,7 @@
 #include "engine_bridge/gl/permutation.h"
 #include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/scene_textures.h"
+#include "engine_bridge/gl/shadow_ray_table.h"
 #include "engine_bridge/gl/shadow_textures.h"
 #include "engine_bridge/gl/targets.h"
 #include "engine_bridge/gl/volume_texture.h"
@@ -55,6 +57,8 @@ class Renderer {
   // Scissor tiles of the super-tile, as PassSettings::tile wants them.
   std::vector<Window> tiles() const;
   const GeometryStream& geometry() const { return stream_; }
+  // Of shadow rays, since the last call.
+  ShadowRayTable::Counts takeShadowRayCounts() { return std::exchange(rayCounts_, {}); }
 
  private:
   struct Shader {  // per primitive
@@ -75,6 +79,8 @@ class Renderer {
   void uploadFrame();
   void uploadSurroundings();
   void uploadShadows();
+  void describeSurfaces();
+  void traceShadows(const Window& superTile);
   void drawSolids();
   void drawChunk(const std::vector<ChunkDraw>& draws, Output output);
 
@@ -105,6 +111,9 @@ class Renderer {
   std::shared_ptr<const Surroundings> atlasOf_;  // what atlas_ holds
   std::shared_ptr<const ShadowMaps> shadowsOf_;  // what shadows_ holds
   std::optional<ShadowTextures> shadows_;
+  ShadowRayTable rayTable_;
+  ShadowRayTable::Counts rayCounts_;
+  bool tracing_ = false;  // only what shadow rays are traced for is drawn
   Window opaqueZPart_, occludersPart_;
   std::shared_ptr<const OccluderPlanes> uploadedOccluders_;
 };

@@ -245,6 +245,9 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
       for (int x = 0; x < part.width(); ++x) planes.empty.at(part.x0 + x, part.y0 + y) = empty.at(x, y);
     if (self.renderer.hasSolids()) self.renderer.targets().readSolid(planes.solid, part.x0, part.y0);
   }
+  const gl::ShadowRayTable::Counts rays = self.renderer.takeShadowRayCounts();
+  self.statistics.shadowRays = rays.rays;
+  self.statistics.shadowSeconds = rays.seconds;
   return planes;
 }
 

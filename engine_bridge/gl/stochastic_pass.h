@@ -21,6 +21,8 @@ struct StochasticPassStatistics {
   double coverSeconds = 0, addSeconds = 0;
   int passes = 0;  // over the geometry
   std::size_t bands = 0, fragments = 0;
+  std::size_t shadowRays = 0;  // as PassStatistics
+  double shadowSeconds = 0;
 };
 
 class StochasticPass {

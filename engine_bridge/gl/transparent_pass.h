@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "engine_bridge/scene/light_volume.h"
 #include "engine_bridge/scene/scene.h"
 #include "engine_bridge/scene/surroundings.h"
 #include "gbuffer/accum.h"
@@ -16,8 +17,6 @@
 
 namespace pellucid {
 
-struct Fog;  // gbuffer/medium.h
-struct LightVolume;
 struct ShadowMaps;  // gbuffer/shadow_maps.h
 
 enum class TextureFilter { mipmap, bilinear, nearest };
@@ -77,6 +76,8 @@ struct PassSettings {
   OcclusionSettings occlusion;
   // What is in the way of the scene's lights, for maps made with this camera; null: nothing is.
   std::shared_ptr<const ShadowMaps> shadows = nullptr;
+  // The same, asked for every fragment of lit surfaces that are not particles, instead of maps.
+  std::shared_ptr<const SurfaceVisibility> shadowRays = nullptr;
   LayerChoice layers = LayerChoice::all;
   int probeCell = 1;  // above 1, lists hold one pixel of every cell of this edge alone: shaders/shared/probe.glsl
   std::shared_ptr<const LightVolume> particleLight;  // what of the lights reaches particles; null: all of them do
@@ -91,6 +92,8 @@ struct PassStatistics {
   int passes = 0;                   // over the geometry
   std::vector<std::string> pruned;  // what was left out, and why
   PublishedClamps clamps;           // tier published
+  std::size_t shadowRays = 0;       // one for each light and fragment that PassSettings::shadowRays was asked for
+  double shadowSeconds = 0;         // of which `seconds` counts these too
 };
 
 // A headless GL 4.5 core context: EGL surfaceless, else EGL device. Throws ResourceError when there is none.

@@ -1,6 +1,7 @@
 // How much of each light reaches fog and particles: sampled once on a grid of the world, from any source of shadows, so
 // that what looks it up pays the same for one shadow or a thousand.
 #pragma once
+#include <cstdint>
 #include <functional>
 
 #include "gbuffer/medium.h"
@@ -11,6 +12,11 @@ namespace pellucid {
 //   light  index into Fog::lights
 //   point  view space, metres
 using PointVisibility = std::function<glm::vec3(std::size_t light, const glm::dvec3& point)>;
+
+// The same of a point on a transparent surface, which does not shadow itself there. Called from several threads at once.
+//   light     counts lights as lightBlocks() does: those that shine
+//   identity  of the triangle, as Fragment::identity
+using SurfaceVisibility = std::function<glm::vec3(std::size_t light, const glm::dvec3& point, std::uint32_t identity)>;
 
 // Optical depth of a grid that stands on the straight way from a point to a light.
 //   step  metres

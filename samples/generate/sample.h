@@ -32,6 +32,7 @@ Sample street();
 Sample mixed();
 Sample shadows();
 Sample chess();
+Sample fire();
 
 struct Entry {
   const char* name;
@@ -42,6 +43,7 @@ inline const std::vector<Entry> kSamples = {{"bars", bars},       {"bottles", bo
                                             {"hair", hair},       {"cad", cad},         {"clouds", clouds},
                                             {"street", street},   {"mixed", mixed},
                                             {"smokeball", smokeball}, {"shafts", shafts},
-                                            {"shadows", shadows}, {"chess", chess}};
+                                            {"shadows", shadows}, {"chess", chess},
+                                            {"sparks", fire}};
 
 }  // namespace pellucid::samples

@@ -2,6 +2,7 @@
 // Appends a fragment to its pixel's list: every pixel of the band owns a range that a first pass has counted.
 #include "gl/frame.glsl"
 #include "gl/fragment_record.glsl"
+#include "gl/identity.glsl"
 #include "shared/refraction.glsl"
 
 layout(std430, binding = 3) writeonly buffer Fragments { FragmentRecord fragments[]; };
@@ -9,9 +10,6 @@ layout(std430, binding = 3) writeonly buffer Fragments { FragmentRecord fragment
 layout(std430, binding = 7) writeonly buffer Dispersions { vec4 dispersions[]; };  // one per fragment
 #endif
 layout(std430, binding = 4) buffer Cursors { uint cursors[]; };  // per pixel of the band: where its next fragment goes
-
-layout(location = 4) flat in uint triangleNumber;  // within the primitive
-uniform uint instanceIdentity;
 
 void appendFragment(Layer layer, Scatter scatter, vec4 dispersion, ivec2 pixel) {
   FragmentRecord record;

@@ -2,13 +2,12 @@
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/exact_cut.glsl"
+#include "gl/identity.glsl"
 #include "gl/shadow_frame.glsl"
 #include "gl/caster_output.glsl"
 #ifdef POINTS
 #include "shared/particle.glsl"
 #endif
-layout(location = 4) flat in uint triangleNumber;  // within the primitive
-uniform uint instanceIdentity;
 
 void main() {
   Surface surface = surfaceHere();

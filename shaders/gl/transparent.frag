@@ -5,12 +5,15 @@
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
 #include "gl/exact_cut.glsl"
+#include "gl/identity.glsl"
 #include "shared/stochastic_mask.glsl"  // here, where no #if leaves it out: a text is included once
 #ifdef ENVIRONMENT
 #include "gl/environment.glsl"
 #endif
 #ifdef SHADOWS
 #include "gl/shadow_maps.glsl"
+#elif defined(SHADOW_RAYS)
+#include "gl/shadow_rays.glsl"
 #endif
 #include "gl/occlusion.glsl"
 #if defined(POINTS) || defined(PARTICLE) || defined(SOFT)
@@ -31,8 +34,6 @@ layout(location = 0) out float fragmentCount;
 #elif defined(OUTPUT_LIST)
 #include "gl/list_output.glsl"
 #elif defined(OUTPUT_COVER) || defined(OUTPUT_CLAIM) || defined(OUTPUT_ADD)
-layout(location = 4) flat in uint triangleNumber;  // within the primitive
-uniform uint instanceIdentity;
 #include "gl/stochastic_frame.glsl"
 #if defined(OUTPUT_COVER)
 #include "gl/stochastic_cover.glsl"
@@ -96,10 +97,15 @@ void main() {
   indirect += environmentReflected(surface, normal, toEye, cosEye);
 #endif
 #ifdef LIGHTS
+#ifdef SHADOW_RAYS
+  int traced = tracedPlace(pixel, identityOf(instanceIdentity, triangleNumber), z, lightCount);
+#endif
   for (int i = 0; i < lightCount; ++i) {
     Arriving arriving = arrivingAt(lights[i], viewPosition);
 #ifdef SHADOWS
     arriving.irradiance *= shadowVisibility(i, viewPosition);
+#elif defined(SHADOW_RAYS)
+    arriving.irradiance *= tracedVisibility(traced, i);
 #endif
     direct += reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
   }

@@ -150,7 +150,7 @@ TEST(ShadowFootprint, CastersBehindAReceiverLeaveItAsItIs) {
     std::printf("form %d: %d of 9600 points on the lid darkened; %d of 2400 under the pane not in its full shadow\n",
                 static_cast<int>(form), changed, floor);
     // Where the coins left no caster in the square, nothing tells how far those that it hides are.
-    EXPECT_LE(changed, form == Form::corrected ? 48 : 0);
+    EXPECT_LE(changed, form == Form::corrected ? 9600 / 50 : 0);
     if (form == Form::variance || form == Form::corrected) {
       EXPECT_EQ(floor, 0);
     }

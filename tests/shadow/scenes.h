@@ -60,7 +60,8 @@ inline Primitive sphere(glm::vec3 centre, float radius) {
 inline void add(Scene& scene, const Primitive& primitive, const Material& material) {
   Instance instance;
   instance.primitive = static_cast<int>(scene.primitives.size());
-  instance.identity = shading::hashOf(static_cast<std::uint32_t>(scene.instances.size()));
+  // Not of the range of triangles: identityOf() hashes both alike.
+  instance.identity = shading::hashOf(0x10000u + static_cast<std::uint32_t>(scene.instances.size()));
   scene.primitives.push_back(primitive);
   scene.primitives.back().material = static_cast<int>(scene.materials.size());
   scene.materials.push_back(material);
