@@ -115,7 +115,7 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
   return hostText("gl/seam.glsl", seamDefines(permutation, stage),
                   {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
-                   "STAGE_SOLIDS", "STAGE_FRONT", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION"},
+                   "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION"},
                   version, places, {"PLD_SEAM", "pld_", ""});
 }
 

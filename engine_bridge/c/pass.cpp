@@ -1,5 +1,6 @@
 #include "engine_bridge/c/pass.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdarg>
@@ -33,7 +34,7 @@ bool pld_pass::isCurrent() const {
 }
 
 uint32_t pld_pass::stagesNeeded() const {
-  return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) |
+  return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) | (permutation_.rims() ? 1u << PLD_STAGE_RIMS : 0u) |
          (permutation_.fronts() ? 1u << PLD_STAGE_FRONT : 0u) | 1u << PLD_STAGE_LAYERS;
 }
 
@@ -66,6 +67,7 @@ pld_status pld_pass::makePrograms() {
   if (permutation_.planarDepth()) build(planarDepth_, "gl/planar_depth.frag", {});
   if (info_.flags & PLD_FLAG_DEBUG_VIEWS) build(view_, "gl/view.frag", defines);
   if (permutation_.has(PLD_FEATURE_DIFFUSION)) build(spreadLevel_, "gl/spread_level.frag", defines);
+  if (permutation_.rims()) build(rimsApply_, "gl/rims_apply.frag", defines);
   return failure.empty() ? PLD_OK : fail(PLD_ERROR_INTERNAL, "%s", failure.c_str());
 }
 
@@ -88,9 +90,9 @@ pld_status pld_pass::create(const pld_create_info& info) {
   gl.GetIntegerv(GL_MAX_UNIFORM_BUFFER_BINDINGS, &bindings);
   gl.GetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
   gl.GetIntegerv(GL_MAX_DRAW_BUFFERS, &drawBuffers);
-  if (info.uniform_binding >= static_cast<uint32_t>(bindings) || info.texture_unit + 3 > static_cast<uint32_t>(units))
-    return fail(PLD_ERROR_ARGUMENT, "pld_create: uniform_binding %u, texture_unit %u: the device has %d bindings, %d units",
-                info.uniform_binding, info.texture_unit, bindings, units);
+  if (info.uniform_binding >= static_cast<uint32_t>(bindings) || units < 3 || info.texture_unit > static_cast<uint32_t>(std::min(units, kMostUnits) - 3))
+    return fail(PLD_ERROR_ARGUMENT, "pld_create: uniform_binding %u, texture_unit %u: expected below %d and at most %d",
+                info.uniform_binding, info.texture_unit, bindings, std::min(units, kMostUnits) - 3);
   if (drawBuffers < kDrawBuffers)
     return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d draw buffers, expected %d", drawBuffers, kDrawBuffers);
   while (const GLenum pending = gl.GetError()) {
@@ -110,7 +112,7 @@ pld_status pld_pass::create(const pld_create_info& info) {
   for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     gl.SamplerParameteri(sampler_, wrap, GL_CLAMP_TO_EDGE);
   gl.SamplerParameteri(sampler_, GL_TEXTURE_COMPARE_MODE, GL_NONE);
-  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &targetFrame_}) {
+  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &targetFrame_}) {
     gl.GenFramebuffers(1, frame);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, *frame);
   }
@@ -136,8 +138,8 @@ void pld_pass::destroyObjects() {
   releaseTextures();
   releaseShadows();
   timers_.destroy(gl);
-  for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_}) program->destroy(gl);
-  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &targetFrame_})
+  for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_}) program->destroy(gl);
+  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &targetFrame_})
     if (*frame) gl.DeleteFramebuffers(1, frame);
   if (vertexArray_) gl.DeleteVertexArrays(1, &vertexArray_);
   if (sampler_) gl.DeleteSamplers(1, &sampler_);
@@ -157,7 +159,7 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
       value = planes_.size();
       return PLD_OK;
     case PLD_VALUE_GEOMETRY_PASSES:
-      value = 1u + (permutation_.fronts() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u);
+      value = 1u + (permutation_.fronts() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (permutation_.rims() ? 1u : 0u);
       return PLD_OK;
     case PLD_VALUE_NS_BEGIN:
     case PLD_VALUE_NS_DRAWS:
@@ -194,7 +196,7 @@ pld_status pld_pass::checkGlsl(const char* call, int version) {
 }
 
 pld_status pld_pass::seam(pld_stage stage, int version, const char*& text) {
-  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LAYERS || !(stagesNeeded() & (1u << stage)))
+  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_RIMS || !(stagesNeeded() & (1u << stage)))
     return fail(PLD_ERROR_ARGUMENT, "pld_glsl: this pass has no stage %d", static_cast<int>(stage));
   if (const pld_status status = checkGlsl("pld_glsl", version); status != PLD_OK) return status;
   std::string& kept = seams_[stage];

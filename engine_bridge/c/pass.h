@@ -34,7 +34,7 @@ struct pld_pass {
   void say(pld_log_level level, const char* text) const;
 
  private:
-  static constexpr int kLevels = 25, kSpreadPlanes = 5, kStages = 3;
+  static constexpr int kLevels = 25, kSpreadPlanes = 5, kStages = 4, kRimPlanes = 3;
   enum class Step { sizeless, between, open, drawn };  // of a frame; drawn: a stage ended, no resolve yet
 
   struct Plane {
@@ -42,7 +42,7 @@ struct pld_pass {
     GLuint texture = 0;
   };
 
-  pld_status checkFrame(const pld_frame& frame, GLenum& depthAttachment);
+  pld_status checkFrame(const pld_frame& frame, bool isFirst, GLenum& depthAttachment);
   pld_status checkOrder(pld_stage stage);
   pld_status checkGlsl(const char* call, int version);
   pld_status checkShadowInfo(const pld_shadow_info& info);
@@ -59,6 +59,8 @@ struct pld_pass {
   void openStage(pld_stage stage);
   void clearStage(pld_stage stage);
   void drawPyramid();
+  pld_status darkenRims();
+  GLuint frameOf(pld_stage stage) const;
   void bind(GLuint unit, GLuint texture);
   void useProgram(const pellucid::c::Program& program);
   GLuint makeTexture(GLenum format, int width, int height, int bits);
@@ -76,11 +78,11 @@ struct pld_pass {
   pellucid::c::Permutation permutation_;
   pellucid::c::SavedState saved_;
   pellucid::c::Timers timers_;
-  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_;
+  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_, rimsApply_;
   GLuint vertexArray_ = 0, sampler_ = 0, uniforms_ = 0;
-  GLuint layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
+  GLuint rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
   std::vector<Plane> planes_;
-  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {};
+  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {};
   GLint levels_[kLevels][4] = {};
   int levelCount_ = 0, atlasWidth_ = 0, atlasHeight_ = 0;
   uint64_t bytes_ = 0;

@@ -1,4 +1,5 @@
 // A frame: begin, the host's draws, end, for every stage; then the resolve.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -21,7 +22,7 @@ bool isOrthographic(const float* p) {
   return p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
 }
 
-constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers"};
+constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims"};
 
 }  // namespace
 
@@ -29,7 +30,7 @@ pld_status pld_pass::checkOrder(pld_stage stage) {
   if (shadowOpen_) return fail(PLD_ERROR_ORDER, "pld_begin: between pld_shadow_begin and pld_shadow_end");
   if (step_ == Step::sizeless) return fail(PLD_ERROR_ORDER, "pld_begin: before pld_resize");
   if (step_ == Step::open) return fail(PLD_ERROR_ORDER, "pld_begin: the last stage has not met its pld_end");
-  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LAYERS)
+  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_RIMS)
     return fail(PLD_ERROR_ARGUMENT, "pld_begin: found stage %d, which pld_stage does not have", static_cast<int>(stage));
   const uint32_t needed = stagesNeeded(), bit = 1u << stage;
   if (!(needed & bit)) return fail(PLD_ERROR_ORDER, "pld_begin: this pass has no stage %d", static_cast<int>(stage));
@@ -41,9 +42,7 @@ pld_status pld_pass::checkOrder(pld_stage stage) {
   return PLD_OK;
 }
 
-pld_status pld_pass::checkFrame(const pld_frame& frame, GLenum& attachment) {
-  if (frame.struct_size != sizeof(pld_frame))
-    return fail(PLD_ERROR_VERSION, "pld_begin: frame.struct_size: found %u, expected %zu", frame.struct_size, sizeof(pld_frame));
+pld_status pld_pass::checkFrame(const pld_frame& frame, bool isFirst, GLenum& attachment) {
   if (frame.width < 1 || frame.height < 1 || frame.width > width_ || frame.height > height_)
     return fail(PLD_ERROR_SIZE, "pld_begin: frame: found %dx%d, expected at most pld_resize()'s %dx%d", frame.width,
                 frame.height, width_, height_);
@@ -82,11 +81,22 @@ pld_status pld_pass::checkFrame(const pld_frame& frame, GLenum& attachment) {
   if (permutation_.depth == PLD_DEPTH_LINEAR ? !isLinearDepth(depth.format) : attachment == 0)
     return fail(PLD_ERROR_FORMAT, "pld_begin: depth_texture has format 0x%x, expected %s", static_cast<unsigned>(depth.format),
                 permutation_.depth == PLD_DEPTH_LINEAR ? "a float colour format" : "a depth format");
+  if (permutation_.rims()) {
+    TextureFacts open;
+    if (!factsOf(gl, frame.occlusion_texture, open))
+      return fail(PLD_ERROR_TEXTURE, "pld_begin: occlusion_texture %u is no 2D texture of this context", frame.occlusion_texture);
+    if (!isOcclusion(open.format))
+      return fail(PLD_ERROR_FORMAT, "pld_begin: occlusion_texture has format 0x%x, expected numbers in red", static_cast<unsigned>(open.format));
+    if (open.width < frame.width || open.height < frame.height)
+      return fail(PLD_ERROR_SIZE, "pld_begin: occlusion_texture is %dx%d, expected at least the frame's %dx%d", open.width, open.height,
+                  frame.width, frame.height);
+    if (frame.occlusion < PLD_OCCLUSION_RELATIVE || frame.occlusion > PLD_OCCLUSION_PUBLISHED)
+      return fail(PLD_ERROR_ARGUMENT, "pld_begin: found occlusion %d, which pld_occlusion does not have", static_cast<int>(frame.occlusion));
+  }
   if (colour.width < frame.width || colour.height < frame.height || depth.width < frame.width || depth.height < frame.height)
     return fail(PLD_ERROR_SIZE, "pld_begin: colour_texture %dx%d, depth_texture %dx%d: expected at least the frame's %dx%d",
                 colour.width, colour.height, depth.width, depth.height, frame.width, frame.height);
-  if (stagesDone_ != 0 && step_ == Step::drawn && stage_ != PLD_STAGE_LAYERS &&
-      (frame.width != frame_.width || frame.height != frame_.height))
+  if (!isFirst && (frame.width != frame_.width || frame.height != frame_.height))
     return fail(PLD_ERROR_SIZE, "pld_begin: found %dx%d, expected the %dx%d of this frame's first stage", frame.width,
                 frame.height, frame_.width, frame_.height);
   return PLD_OK;
@@ -139,10 +149,11 @@ void pld_pass::drawPlanarDepth(const pld_frame& frame) {
 // The bound framebuffer's planes, empty.
 void pld_pass::clearStage(pld_stage stage) {
   constexpr float far = std::numeric_limits<float>::infinity();
-  const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f;
+  const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f, none[4] = {0, 0, 0, 0};
   if (stage == PLD_STAGE_LAYERS)
     for (const Plane& plane : planes_) gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
   if (stage == PLD_STAGE_FRONT) gl.ClearBufferfv(GL_COLOR, 0, nowhere);
+  for (GLint i = 0; stage == PLD_STAGE_RIMS && i < kRimPlanes; ++i) gl.ClearBufferfv(GL_COLOR, i, none);
   if (stage == PLD_STAGE_SOLIDS) {
     gl.DepthMask(GL_TRUE);
     gl.ClearBufferfv(GL_COLOR, 0, noSolid);
@@ -161,6 +172,7 @@ void pld_pass::openStage(pld_stage stage) {
   if (stage == PLD_STAGE_LAYERS)
     for (const Plane& plane : planes_) blend(plane.spec.attachment, plane.spec.blend);
   if (stage == PLD_STAGE_FRONT) blend(0, BlendKind::minimum);
+  for (GLuint i = 0; stage == PLD_STAGE_RIMS && i < kRimPlanes; ++i) blend(i, BlendKind::add);
   if (stage == PLD_STAGE_SOLIDS) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_GREATER);
@@ -177,13 +189,13 @@ void pld_pass::openStage(pld_stage stage) {
 pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   if (const pld_status status = checkOrder(stage); status != PLD_OK) return status;
   GLenum attachment = 0;
-  if (const pld_status status = checkFrame(frame, attachment); status != PLD_OK) return status;
-  const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
   const bool first = (stagesNeeded() & ((1u << stage) - 1)) == 0;
-  // Unit 0 is used by the depth pass, the seam's units by the stage.
+  if (const pld_status status = checkFrame(frame, first, attachment); status != PLD_OK) return status;
+  const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
+  // Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six.
   const auto seamUnit = static_cast<int>(info_.texture_unit);
-  if (saves) saved_.save(gl, {0, seamUnit + 3}, static_cast<int>(info_.uniform_binding));
-  const GLuint target = stage == PLD_STAGE_LAYERS ? layersFrame_ : stage == PLD_STAGE_FRONT ? frontFrame_ : solidFrame_;
+  if (saves) saved_.save(gl, {0, std::max(seamUnit + 3, stage == PLD_STAGE_RIMS ? 6 : 0)}, static_cast<int>(info_.uniform_binding));
+  const GLuint target = frameOf(stage);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   frameDepthAttachment_ = stage == PLD_STAGE_SOLIDS ? 0 : attachment;
   if (frameDepthAttachment_) {
@@ -217,18 +229,58 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   return PLD_OK;
 }
 
+GLuint pld_pass::frameOf(pld_stage stage) const {
+  switch (stage) {
+    case PLD_STAGE_SOLIDS:
+      return solidFrame_;
+    case PLD_STAGE_FRONT:
+      return frontFrame_;
+    case PLD_STAGE_RIMS:
+      return rimsFrame_;
+    default:
+      return layersFrame_;
+  }
+}
+
+// From the sums that the layers have left.
+pld_status pld_pass::darkenRims() {
+  TextureFacts facts;
+  if (!factsOf(gl, frame_.occlusion_texture, facts) || facts.width < frame_.width || facts.height < frame_.height)
+    return fail(PLD_ERROR_TEXTURE, "pld_end: occlusion_texture %u is no longer what pld_begin saw", frame_.occlusion_texture);
+  setPlainDrawing(gl, frame_.width, frame_.height);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, layersFrame_);
+  for (GLuint i = 0; i < kDrawBuffers; ++i) {
+    const bool holds = i == 0 || (i == 4 && permutation_.light());
+    gl.ColorMaski(i, holds, holds, holds, GL_FALSE);
+    if (!holds) continue;
+    gl.Enablei(GL_BLEND, i);
+    gl.BlendFuncSeparatei(i, GL_ONE, GL_ONE, GL_ONE, GL_ONE);
+    gl.BlendEquationSeparatei(i, GL_FUNC_REVERSE_SUBTRACT, GL_FUNC_REVERSE_SUBTRACT);
+  }
+  for (GLuint i = 0; i < kRimPlanes; ++i) bind(i, rims_[i]);
+  bind(3, planarZ_);
+  bind(4, frame_.occlusion_texture);
+  if (solid_) bind(5, solid_);
+  useProgram(rimsApply_);
+  gl.Uniform2i(rimsApply_.place(gl, "pictureSize"), frame_.width, frame_.height);
+  gl.Uniform1i(rimsApply_.place(gl, "form"), static_cast<GLint>(frame_.occlusion));
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  return PLD_OK;
+}
+
 pld_status pld_pass::end() {
   if (step_ != Step::open) return fail(PLD_ERROR_ORDER, "pld_end: without a pld_begin");
   timers_.mark(gl, Timers::markOf(stage_, 2));
   if (frameDepthAttachment_) {
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, stage_ == PLD_STAGE_LAYERS ? layersFrame_ : frontFrame_);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frameOf(stage_));
     gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, 0, 0);
   }
+  const pld_status status = stage_ == PLD_STAGE_RIMS ? darkenRims() : PLD_OK;
   if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
   popGroup();
   stagesDone_ |= 1u << stage_;
   step_ = Step::drawn;
-  return PLD_OK;
+  return status;
 }
 
 // A texel of one level reads those of the one below it, of the same textures: a barrier lies between the draws.

@@ -26,6 +26,7 @@ void pld_pass::releaseTextures() {
   for (Plane& plane : planes_) release(plane.texture);
   for (GLuint* one : {&planarZ_, &frontZ_, &solid_, &solidDepth_}) release(*one);
   for (GLuint& one : spread_) release(one);
+  for (GLuint& one : rims_) release(one);
   bytes_ = 0;
   width_ = height_ = 0;
 }
@@ -80,6 +81,16 @@ pld_status pld_pass::makeTextures(int width, int height) {
     solidDepth_ = makeTexture(GL_DEPTH_COMPONENT32F, width, height, 32);
     attach(solidFrame_, GL_COLOR_ATTACHMENT0, solid_);
     attach(solidFrame_, GL_DEPTH_ATTACHMENT, solidDepth_);
+    check();
+  }
+  if (permutation_.rims()) {
+    GLenum all[kRimPlanes];
+    for (GLuint i = 0; i < kRimPlanes; ++i) {
+      rims_[i] = makeTexture(i < 2 ? GL_RGBA32F : GL_RG32F, width, height, i < 2 ? 128 : 64);
+      all[i] = GL_COLOR_ATTACHMENT0 + i;
+      attach(rimsFrame_, all[i], rims_[i]);
+    }
+    gl.DrawBuffers(kRimPlanes, all);
     check();
   }
   if (permutation_.has(PLD_FEATURE_DIFFUSION)) {

@@ -1,5 +1,7 @@
 // The C boundary: null pointers, versions, contexts, threads and exceptions stop here.
+#include <cstddef>
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 #include "engine_bridge/c/pass.h"
@@ -55,7 +57,7 @@ pld_status checkInfo(const pld_create_info& info) {
       return refuse(info, PLD_ERROR_ARGUMENT, text);
     }
   constexpr uint32_t features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
-                                PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS;
+                                PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS;
   constexpr uint32_t flags = PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS;
   if ((info.features & ~features) || (info.flags & ~flags))
     return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: features or flags hold a bit that this version does not have");
@@ -102,7 +104,13 @@ pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height) {
 
 pld_status pld_begin(pld_pass* pass, pld_stage stage, const pld_frame* frame) {
   return guarded(pass, "pld_begin", [&] {
-    return frame ? pass->begin(stage, *frame) : pass->fail(PLD_ERROR_ARGUMENT, "pld_begin: frame is null");
+    if (!frame) return pass->fail(PLD_ERROR_ARGUMENT, "pld_begin: frame is null");
+    // Of 0.1 it ended before occlusion_texture.
+    pld_frame whole{};
+    if (frame->struct_size != offsetof(pld_frame, occlusion_texture) && frame->struct_size != sizeof(pld_frame))
+      return pass->fail(PLD_ERROR_VERSION, "pld_begin: frame.struct_size: found %u, expected %zu", frame->struct_size, sizeof(pld_frame));
+    std::memcpy(&whole, frame, frame->struct_size);
+    return pass->begin(stage, whole);
   });
 }
 

@@ -15,6 +15,8 @@ std::string conflictOf(const Permutation& p) {
     return "features: found PLD_FEATURE_DISPERSION without PLD_FEATURE_REFRACTION";
   if (p.scatters() && p.method != PLD_METHOD_PHENOMENOLOGICAL)
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
+  if (p.rims() && (p.published() || p.fronts()))
+    return "features: found PLD_FEATURE_RIMS with PLD_TIER_PUBLISHED or PLD_METHOD_FRONT_TAIL, whose planes hold no light to take it from";
   return {};
 }
 
@@ -68,6 +70,8 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   const bool layers = stage == PLD_STAGE_LAYERS;
   define("STAGE_SOLIDS", stage == PLD_STAGE_SOLIDS);
   define("STAGE_FRONT", stage == PLD_STAGE_FRONT);
+  define("STAGE_RIMS", stage == PLD_STAGE_RIMS);
+  define("RIMS", p.rims());
   define("DEPTH_IN_SHADER", p.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS);
   define("SOLIDS", stage != PLD_STAGE_SOLIDS && p.has(PLD_FEATURE_SOLIDS));
   define("PUBLISHED", p.published());

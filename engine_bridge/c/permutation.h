@@ -22,8 +22,9 @@ struct Permutation {
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters()); }
   // No layer adds light: half of the sums are not needed.
   bool lean() const { return !published() && !light(); }
+  bool rims() const { return has(PLD_FEATURE_RIMS); }
   // Whether planar depth is needed beside the host's.
-  bool planarDepth() const { return scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
+  bool planarDepth() const { return rims() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
 };
 
 // Empty when the parts go together, else what does not: a sentence.

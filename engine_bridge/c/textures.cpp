@@ -55,6 +55,19 @@ bool isLinearDepth(GLint format) {
   }
 }
 
+bool isOcclusion(GLint format) {
+  switch (format) {
+    case GL_RED:
+    case GL_R8:
+    case GL_R16:
+    case GL_RG8:
+    case GL_RG16:
+      return true;
+    default:
+      return isLinearDepth(format) || isColour(format);
+  }
+}
+
 bool isColour(GLint format) {
   switch (format) {
     case GL_RGBA:

@@ -14,6 +14,7 @@ bool factsOf(const GlFunctions& gl, GLuint name, TextureFacts& facts);
 // How `format` serves as depth, or 0: GL_DEPTH_ATTACHMENT or GL_DEPTH_STENCIL_ATTACHMENT.
 GLenum depthAttachment(GLint format);
 bool isLinearDepth(GLint format);  // red of a float texture
+bool isOcclusion(GLint format);    // red of whatever holds numbers from 0 to 1
 bool isColour(GLint format);       // what a background or a target may be
 
 }  // namespace pellucid::c

@@ -11,16 +11,9 @@ vec2 coverageGradient(float coverage) {
   return vec2(dFdxFine(coverage), dFdyFine(coverage));
 }
 
-float neighboursOcclusion(vec2 gradient, float z, ivec2 pixel, int form) {
-  ivec2 size = textureSize(occluders, 0);
-  OcclusionSearch search = occlusionSearch(gradient);
-  precise vec2 sum = vec2(0.0f);
-  for (int tap = 0; tap < search.taps; ++tap) {
-    vec2 found = texelFetch(occluders, occlusionPixel(pixel, search, tap, form, size), 0).rg;
-    sum = sum + occlusionTap(search, tap, found.g, found.r, z, form);
-  }
-  return occlusionFrom(sum, form);
-}
+ivec2 occludersSize() { return textureSize(occluders, 0); }
+vec2 occluderAt(ivec2 pixel) { return texelFetch(occluders, pixel, 0).rg; }
+#include "gl/neighbours.glsl"
 
 float occlusionHere(float coverage, vec2 gradient, float z, ivec2 pixel) {
   if (isRim(coverage)) {

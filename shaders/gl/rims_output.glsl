@@ -1,6 +1,7 @@
 #pragma once
 // The light that rims get from around, apart from the sums: gbuffer/rim_planes.h. Targets add.
 #include "shared/accumulate.glsl"
+#include "shared/material.glsl"
 
 layout(location = 0) out vec4 averagedRim;
 layout(location = 1) out vec4 addedRim;

@@ -1,12 +1,18 @@
 #pragma once
 // What an engine's material shader holds: the outputs of a stage, and pldWriteFragment(), which it calls where it would
-// write a colour. Defines choose the stage (STAGE_SOLIDS, STAGE_FRONT, else the layers) and the planes.
+// write a colour. Defines choose the stage (STAGE_SOLIDS, STAGE_FRONT, STAGE_RIMS, else the layers) and the planes.
 #include "shared/diffusion.glsl"
 #include "shared/resolve.glsl"  // here: what is first included inside of a condition is there under it alone
 #if defined(STAGE_SOLIDS)
 layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
 #elif defined(STAGE_FRONT)
 layout(location = 0) out float frontZ;  // blended by MIN
+#elif defined(STAGE_RIMS)
+#include "gl/rims_output.glsl"
+#include "shared/occlusion.glsl"
+vec3 seamAround;
+vec2 seamGradient;
+bool seamIsRim = false;
 #elif defined(PUBLISHED)
 #include "gl/published_output.glsl"
 #elif defined(LEAN)
@@ -91,6 +97,9 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
 #endif
 #if defined(STAGE_FRONT)
   frontZ = z;
+#elif defined(STAGE_RIMS)
+  if (!seamIsRim || !isRim(layer.coverage)) discard;
+  writeRim(layer, max(seamAround, vec3(0.0f)), seamGradient, seamWeight());
 #else
   Scatter scatter;
   scatter.offset = vec2(offset.x, offset.y * pldPicture.y);
@@ -178,3 +187,27 @@ void pldWriteFragment(PldSurface surface) {
 #endif
   pldWriteLayer(surface.radiance * pldPicture.x, surface.coverage, surface.transmission, z, offset, variance, dispersion);
 }
+
+#ifdef RIMS
+// In place of pldWriteFragment(), for cut-out surfaces whose antialiased rim (0 < coverage < 1) takes its ambient
+// occlusion from the opaque pixels beside it.
+//   around    the part of surface.radiance that occlusion darkens, as radiance is
+//   gradient  pldCoverageGradient(), taken before any discard
+void pldWriteRim(PldSurface surface, vec3 around, vec2 gradient) {
+#ifdef STAGE_RIMS
+  seamAround = around * pldPicture.x;
+  seamGradient = gradient;
+  seamIsRim = true;
+#endif
+  pldWriteFragment(surface);
+}
+
+// Change of coverage per pixel.
+vec2 pldCoverageGradient(float coverage) {
+#if __VERSION__ >= 450
+  return vec2(dFdxFine(coverage), dFdyFine(coverage));
+#else
+  return vec2(dFdx(coverage), dFdy(coverage));
+#endif
+}
+#endif

@@ -78,15 +78,17 @@ Host::Host(int wide, int high)
       height(high),
       colour(makeTexture(GL_RGBA32F, wide, high)),
       depth(makeTexture(GL_R32F, wide, high)),
-      output(makeTexture(GL_RGBA32F, wide, high)) {
-  const float grey[4] = {0.5f, 0.4f, 0.3f, 1.0f}, far = 10.0f;
+      output(makeTexture(GL_RGBA32F, wide, high)),
+      occlusion(makeTexture(GL_R8, wide, high)) {
+  const float grey[4] = {0.5f, 0.4f, 0.3f, 1.0f}, far = 10.0f, open = 0.5f;
+  glClearTexImage(occlusion, 0, GL_RED, GL_FLOAT, &open);
   glClearTexImage(colour, 0, GL_RGBA, GL_FLOAT, grey);
   glClearTexImage(depth, 0, GL_RED, GL_FLOAT, &far);
 }
 
 Host::~Host() {
-  const GLuint names[] = {colour, depth, output};
-  glDeleteTextures(3, names);
+  const GLuint names[] = {colour, depth, output, occlusion};
+  glDeleteTextures(4, names);
 }
 
 pld_create_info Host::info() const {
@@ -108,6 +110,7 @@ pld_frame Host::frame() const {
   frame.struct_size = sizeof(frame);
   frame.colour_texture = colour;
   frame.depth_texture = depth;
+  frame.occlusion_texture = occlusion;
   frame.width = width;
   frame.height = height;
   frame.projection[0] = 2.0f * static_cast<float>(height) / static_cast<float>(width);

@@ -45,7 +45,7 @@ class Host {
   std::vector<float> picture() const;   // of the target
 
   int width, height;
-  GLuint colour, depth, output;
+  GLuint colour, depth, output, occlusion;
   mutable Log log;
 };
 

@@ -51,6 +51,7 @@ TEST(BridgeMisuse, CreateRefusesWhatItCannotKeep) {
   refused([](auto& i) { i.weight = static_cast<pld_weight>(44); }, PLD_ERROR_ARGUMENT, "weight");
   refused([](auto& i) { i.uniform_binding = 100000; }, PLD_ERROR_ARGUMENT, "uniform_binding");
   refused([](auto& i) { i.texture_unit = 15; i.features = 0; i.texture_unit = 1000; }, PLD_ERROR_ARGUMENT, "texture_unit");
+  refused([](auto& i) { i.texture_unit = 30; }, PLD_ERROR_ARGUMENT, "a unit that is not saved");
   refused([](auto& i) { i.method = PLD_METHOD_FRONT_TAIL; i.features = PLD_FEATURE_REFRACTION; }, PLD_ERROR_UNSUPPORTED, "front+tail refracts");
   refused([](auto& i) { i.features = PLD_FEATURE_DISPERSION; }, PLD_ERROR_UNSUPPORTED, "dispersion alone");
   refused([](auto& i) { i.tier = PLD_TIER_PUBLISHED; i.method = PLD_METHOD_FRONT_TAIL; }, PLD_ERROR_UNSUPPORTED, "published front+tail");
