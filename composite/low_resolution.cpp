@@ -76,8 +76,7 @@ class Upsampler {
 
   Upsampled around(int x, int y) const {
     const float scale = 1.0f / static_cast<float>(view_.factor);
-    // Texel i was sampled at i + sample.
-    const glm::vec2 place = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + sample_) * scale - sample_;
+    const glm::vec2 place = shading::placeInTexels(glm::vec2(static_cast<float>(x), static_cast<float>(y)), sample_, scale);
     const int cx = static_cast<int>(std::floor(place.x + 0.5f)), cy = static_cast<int>(std::floor(place.y + 0.5f));
     const float opaqueZ = view_.opaqueZ.at(x, y);
     Upsampled up;

@@ -35,6 +35,7 @@ bool pld_pass::isCurrent() const {
 
 uint32_t pld_pass::stagesNeeded() const {
   return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) | (permutation_.rims() ? 1u << PLD_STAGE_RIMS : 0u) |
+         (permutation_.low() ? 1u << PLD_STAGE_LOW : 0u) |
          (permutation_.fronts() ? 1u << PLD_STAGE_FRONT : 0u) | 1u << PLD_STAGE_LAYERS;
 }
 
@@ -68,6 +69,7 @@ pld_status pld_pass::makePrograms() {
   if (info_.flags & PLD_FLAG_DEBUG_VIEWS) build(view_, "gl/view.frag", defines);
   if (permutation_.has(PLD_FEATURE_DIFFUSION)) build(spreadLevel_, "gl/spread_level.frag", defines);
   if (permutation_.rims()) build(rimsApply_, "gl/rims_apply.frag", defines);
+  if (permutation_.low() && failure.empty()) failure = buildLowPrograms();
   return failure.empty() ? PLD_OK : fail(PLD_ERROR_INTERNAL, "%s", failure.c_str());
 }
 
@@ -112,7 +114,8 @@ pld_status pld_pass::create(const pld_create_info& info) {
   for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     gl.SamplerParameteri(sampler_, wrap, GL_CLAMP_TO_EDGE);
   gl.SamplerParameteri(sampler_, GL_TEXTURE_COMPARE_MODE, GL_NONE);
-  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &targetFrame_}) {
+  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
+                        &lowDepthFrame_, &lowTexelFrame_, &targetFrame_}) {
     gl.GenFramebuffers(1, frame);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, *frame);
   }
@@ -123,6 +126,8 @@ pld_status pld_pass::create(const pld_create_info& info) {
   }
   if (info.flags & PLD_FLAG_TIMERS) timers_.create(gl);
   for (const PlaneSpec& spec : planesOf(permutation_)) planes_.push_back({spec, 0});
+  if (permutation_.low())
+    for (const PlaneSpec& spec : lowPlanes()) low_.push_back({spec, 0});
   pld_status status = makePrograms();
   state.restore(gl);
   bool outOfMemory = false;
@@ -138,8 +143,9 @@ void pld_pass::destroyObjects() {
   releaseTextures();
   releaseShadows();
   timers_.destroy(gl);
-  for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_}) program->destroy(gl);
-  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &targetFrame_})
+  for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_, &lowTexel_, &upsample_}) program->destroy(gl);
+  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
+                        &lowDepthFrame_, &lowTexelFrame_, &targetFrame_})
     if (*frame) gl.DeleteFramebuffers(1, frame);
   if (vertexArray_) gl.DeleteVertexArrays(1, &vertexArray_);
   if (sampler_) gl.DeleteSamplers(1, &sampler_);
@@ -196,7 +202,7 @@ pld_status pld_pass::checkGlsl(const char* call, int version) {
 }
 
 pld_status pld_pass::seam(pld_stage stage, int version, const char*& text) {
-  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_RIMS || !(stagesNeeded() & (1u << stage)))
+  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LOW || !(stagesNeeded() & (1u << stage)))
     return fail(PLD_ERROR_ARGUMENT, "pld_glsl: this pass has no stage %d", static_cast<int>(stage));
   if (const pld_status status = checkGlsl("pld_glsl", version); status != PLD_OK) return status;
   std::string& kept = seams_[stage];

@@ -34,7 +34,7 @@ struct pld_pass {
   void say(pld_log_level level, const char* text) const;
 
  private:
-  static constexpr int kLevels = 25, kSpreadPlanes = 5, kStages = 4, kRimPlanes = 3;
+  static constexpr int kLevels = 25, kSpreadPlanes = 5, kStages = 5, kRimPlanes = 3, kLowTexels = 3;
   enum class Step { sizeless, between, open, drawn };  // of a frame; drawn: a stage ended, no resolve yet
 
   struct Plane {
@@ -61,6 +61,13 @@ struct pld_pass {
   void drawPyramid();
   pld_status darkenRims();
   GLuint frameOf(pld_stage stage) const;
+  void blend(GLuint attachment, pellucid::c::BlendKind kind);
+  pellucid::c::Permutation lowPermutation() const;
+  std::vector<pellucid::c::PlaneSpec> lowPlanes() const;
+  std::string buildLowPrograms();
+  bool makeLowTextures(int width, int height);
+  void drawLowDepth(const pld_frame& frame);
+  void addLow();
   void bind(GLuint unit, GLuint texture);
   void useProgram(const pellucid::c::Program& program);
   GLuint makeTexture(GLenum format, int width, int height, int bits);
@@ -78,11 +85,11 @@ struct pld_pass {
   pellucid::c::Permutation permutation_;
   pellucid::c::SavedState saved_;
   pellucid::c::Timers timers_;
-  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_, rimsApply_;
+  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_, upsample_;
   GLuint vertexArray_ = 0, sampler_ = 0, uniforms_ = 0;
-  GLuint rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
-  std::vector<Plane> planes_;
-  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {};
+  GLuint lowFrame_ = 0, lowDepthFrame_ = 0, lowTexelFrame_ = 0, rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
+  std::vector<Plane> planes_, low_;  // of the layers, of those of low resolution
+  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {}, lowFarZ_ = 0, lowTexels_[kLowTexels] = {};
   GLint levels_[kLevels][4] = {};
   int levelCount_ = 0, atlasWidth_ = 0, atlasHeight_ = 0;
   uint64_t bytes_ = 0;

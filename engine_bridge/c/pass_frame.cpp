@@ -22,7 +22,7 @@ bool isOrthographic(const float* p) {
   return p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
 }
 
-constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims"};
+constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims", "pellucid low resolution"};
 
 }  // namespace
 
@@ -30,7 +30,7 @@ pld_status pld_pass::checkOrder(pld_stage stage) {
   if (shadowOpen_) return fail(PLD_ERROR_ORDER, "pld_begin: between pld_shadow_begin and pld_shadow_end");
   if (step_ == Step::sizeless) return fail(PLD_ERROR_ORDER, "pld_begin: before pld_resize");
   if (step_ == Step::open) return fail(PLD_ERROR_ORDER, "pld_begin: the last stage has not met its pld_end");
-  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_RIMS)
+  if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LOW)
     return fail(PLD_ERROR_ARGUMENT, "pld_begin: found stage %d, which pld_stage does not have", static_cast<int>(stage));
   const uint32_t needed = stagesNeeded(), bit = 1u << stage;
   if (!(needed & bit)) return fail(PLD_ERROR_ORDER, "pld_begin: this pass has no stage %d", static_cast<int>(stage));
@@ -81,6 +81,10 @@ pld_status pld_pass::checkFrame(const pld_frame& frame, bool isFirst, GLenum& at
   if (permutation_.depth == PLD_DEPTH_LINEAR ? !isLinearDepth(depth.format) : attachment == 0)
     return fail(PLD_ERROR_FORMAT, "pld_begin: depth_texture has format 0x%x, expected %s", static_cast<unsigned>(depth.format),
                 permutation_.depth == PLD_DEPTH_LINEAR ? "a float colour format" : "a depth format");
+  if (permutation_.low() && frame.low_factor != 2 && frame.low_factor != 4 && frame.low_factor != 8)
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: low_factor: found %d, expected 2, 4 or 8", frame.low_factor);
+  if (permutation_.low() && (frame.width % frame.low_factor != 0 || frame.height % frame.low_factor != 0))
+    return fail(PLD_ERROR_SIZE, "pld_begin: frame: found %dx%d, expected multiples of low_factor %d", frame.width, frame.height, frame.low_factor);
   if (permutation_.rims()) {
     TextureFacts open;
     if (!factsOf(gl, frame.occlusion_texture, open))
@@ -150,8 +154,8 @@ void pld_pass::drawPlanarDepth(const pld_frame& frame) {
 void pld_pass::clearStage(pld_stage stage) {
   constexpr float far = std::numeric_limits<float>::infinity();
   const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f, none[4] = {0, 0, 0, 0};
-  if (stage == PLD_STAGE_LAYERS)
-    for (const Plane& plane : planes_) gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
+  if (stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW)
+    for (const Plane& plane : stage == PLD_STAGE_LOW ? low_ : planes_) gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
   if (stage == PLD_STAGE_FRONT) gl.ClearBufferfv(GL_COLOR, 0, nowhere);
   for (GLint i = 0; stage == PLD_STAGE_RIMS && i < kRimPlanes; ++i) gl.ClearBufferfv(GL_COLOR, i, none);
   if (stage == PLD_STAGE_SOLIDS) {
@@ -161,26 +165,27 @@ void pld_pass::clearStage(pld_stage stage) {
   }
 }
 
+void pld_pass::blend(GLuint i, BlendKind kind) {
+  gl.Enablei(GL_BLEND, i);
+  const bool product = kind == BlendKind::product;
+  gl.BlendFuncSeparatei(i, product ? GL_ZERO : GL_ONE, product ? GL_ONE_MINUS_SRC_COLOR : GL_ONE, GL_ONE, GL_ONE);
+  const GLenum equation = kind == BlendKind::minimum ? GL_MIN : GL_FUNC_ADD;
+  gl.BlendEquationSeparatei(i, equation, equation);
+}
+
 void pld_pass::openStage(pld_stage stage) {
-  const auto blend = [&](GLuint i, BlendKind kind) {
-    gl.Enablei(GL_BLEND, i);
-    const bool product = kind == BlendKind::product;
-    gl.BlendFuncSeparatei(i, product ? GL_ZERO : GL_ONE, product ? GL_ONE_MINUS_SRC_COLOR : GL_ONE, GL_ONE, GL_ONE);
-    const GLenum equation = kind == BlendKind::minimum ? GL_MIN : GL_FUNC_ADD;
-    gl.BlendEquationSeparatei(i, equation, equation);
-  };
-  if (stage == PLD_STAGE_LAYERS)
-    for (const Plane& plane : planes_) blend(plane.spec.attachment, plane.spec.blend);
+  if (stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW)
+    for (const Plane& plane : stage == PLD_STAGE_LOW ? low_ : planes_) blend(plane.spec.attachment, plane.spec.blend);
   if (stage == PLD_STAGE_FRONT) blend(0, BlendKind::minimum);
   for (GLuint i = 0; stage == PLD_STAGE_RIMS && i < kRimPlanes; ++i) blend(i, BlendKind::add);
   if (stage == PLD_STAGE_SOLIDS) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_GREATER);
-  } else if (permutation_.depth != PLD_DEPTH_LINEAR) {
+  } else if (permutation_.depth != PLD_DEPTH_LINEAR && stage != PLD_STAGE_LOW) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(permutation_.depth == PLD_DEPTH_REVERSED ? GL_GEQUAL : GL_LEQUAL);
   }
-  bind(info_.texture_unit, planarZ_);
+  bind(info_.texture_unit, stage == PLD_STAGE_LOW ? lowFarZ_ : planarZ_);
   bind(info_.texture_unit + 1, solid_);
   bind(info_.texture_unit + 2, frontZ_);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, info_.uniform_binding, uniforms_);
@@ -192,12 +197,13 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   const bool first = (stagesNeeded() & ((1u << stage) - 1)) == 0;
   if (const pld_status status = checkFrame(frame, first, attachment); status != PLD_OK) return status;
   const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
-  // Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six.
+  // Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six, layers of low
+  // resolution resolved from ten.
   const auto seamUnit = static_cast<int>(info_.texture_unit);
-  if (saves) saved_.save(gl, {0, std::max(seamUnit + 3, stage == PLD_STAGE_RIMS ? 6 : 0)}, static_cast<int>(info_.uniform_binding));
+  if (saves) saved_.save(gl, {0, std::max(seamUnit + 3, stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 10 : 0)}, static_cast<int>(info_.uniform_binding));
   const GLuint target = frameOf(stage);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
-  frameDepthAttachment_ = stage == PLD_STAGE_SOLIDS ? 0 : attachment;
+  frameDepthAttachment_ = stage == PLD_STAGE_SOLIDS || stage == PLD_STAGE_LOW ? 0 : attachment;
   if (frameDepthAttachment_) {
     gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, frame.depth_texture, 0);
     if (gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
@@ -218,7 +224,13 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
     if (saves) saved_.restoreForDraws(gl);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   }
-  setAccumulation(gl, frame.width, frame.height);
+  const bool low = stage == PLD_STAGE_LOW;
+  if (low) {
+    drawLowDepth(frame);
+    if (saves) saved_.restoreForDraws(gl);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+  }
+  setAccumulation(gl, frame.width / (low ? frame.low_factor : 1), frame.height / (low ? frame.low_factor : 1));
   clearStage(stage);
   openStage(stage);
   if (saves) saved_.restoreActiveUnit(gl);
@@ -237,6 +249,8 @@ GLuint pld_pass::frameOf(pld_stage stage) const {
       return frontFrame_;
     case PLD_STAGE_RIMS:
       return rimsFrame_;
+    case PLD_STAGE_LOW:
+      return lowFrame_;
     default:
       return layersFrame_;
   }
@@ -276,6 +290,7 @@ pld_status pld_pass::end() {
     gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, 0, 0);
   }
   const pld_status status = stage_ == PLD_STAGE_RIMS ? darkenRims() : PLD_OK;
+  if (stage_ == PLD_STAGE_LOW) addLow();
   if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
   popGroup();
   stagesDone_ |= 1u << stage_;

@@ -27,6 +27,9 @@ void pld_pass::releaseTextures() {
   for (GLuint* one : {&planarZ_, &frontZ_, &solid_, &solidDepth_}) release(*one);
   for (GLuint& one : spread_) release(one);
   for (GLuint& one : rims_) release(one);
+  for (Plane& plane : low_) release(plane.texture);
+  for (GLuint& one : lowTexels_) release(one);
+  release(lowFarZ_);
   bytes_ = 0;
   width_ = height_ = 0;
 }
@@ -83,6 +86,7 @@ pld_status pld_pass::makeTextures(int width, int height) {
     attach(solidFrame_, GL_DEPTH_ATTACHMENT, solidDepth_);
     check();
   }
+  if (permutation_.low()) complete = makeLowTextures(width, height) && complete;
   if (permutation_.rims()) {
     GLenum all[kRimPlanes];
     for (GLuint i = 0; i < kRimPlanes; ++i) {

@@ -17,7 +17,14 @@ std::string conflictOf(const Permutation& p) {
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
   if (p.rims() && (p.published() || p.fronts()))
     return "features: found PLD_FEATURE_RIMS with PLD_TIER_PUBLISHED or PLD_METHOD_FRONT_TAIL, whose planes hold no light to take it from";
+  if (p.low() && (p.published() || p.fronts()))
+    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_TIER_PUBLISHED or PLD_METHOD_FRONT_TAIL, whose planes take no resolved layer";
   return {};
+}
+
+PlaneSpec nearestPlane() {
+  constexpr float far = std::numeric_limits<float>::infinity();
+  return {5, GL_R32F, 32, 9, BlendKind::minimum, {far, 0, 0, 0}};
 }
 
 std::vector<PlaneSpec> planesOf(const Permutation& p) {
@@ -67,18 +74,18 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   const auto define = [&](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
   };
-  const bool layers = stage == PLD_STAGE_LAYERS;
+  const bool low = stage == PLD_STAGE_LOW, layers = stage == PLD_STAGE_LAYERS;
   define("STAGE_SOLIDS", stage == PLD_STAGE_SOLIDS);
   define("STAGE_FRONT", stage == PLD_STAGE_FRONT);
   define("STAGE_RIMS", stage == PLD_STAGE_RIMS);
   define("RIMS", p.rims());
-  define("DEPTH_IN_SHADER", p.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS);
-  define("SOLIDS", stage != PLD_STAGE_SOLIDS && p.has(PLD_FEATURE_SOLIDS));
+  define("DEPTH_IN_SHADER", p.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS || low);
+  define("SOLIDS", stage != PLD_STAGE_SOLIDS && !low && p.has(PLD_FEATURE_SOLIDS));
   define("PUBLISHED", p.published());
   define("UNCOUNTED", p.published());
   define("GREY", p.grey());
   define("LEAN", p.lean());
-  define("HALF", p.tier == PLD_TIER_HALF && layers);
+  define("HALF", p.tier == PLD_TIER_HALF && (layers || low));
   define("FRONT_TAIL", p.fronts() && layers);
   define("SCATTER", p.scatters() && layers);
   define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && layers);

@@ -19,12 +19,13 @@ struct Permutation {
   bool fronts() const { return method == PLD_METHOD_FRONT_TAIL; }
   bool published() const { return tier == PLD_TIER_PUBLISHED; }
   bool grey() const { return !published() && !has(PLD_FEATURE_COLOURED); }
-  bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters()); }
+  bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters() || low()); }
   // No layer adds light: half of the sums are not needed.
   bool lean() const { return !published() && !light(); }
+  bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // Whether planar depth is needed beside the host's.
-  bool planarDepth() const { return rims() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
+  bool planarDepth() const { return rims() || low() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
 };
 
 // Empty when the parts go together, else what does not: a sentence.
@@ -42,6 +43,7 @@ struct PlaneSpec {
   GLfloat clear[4];
 };
 std::vector<PlaneSpec> planesOf(const Permutation& permutation);
+PlaneSpec nearestPlane();  // of low-resolution layers besides
 
 // Defines of shaders/gl/seam.glsl for a stage; of resolve_here.glsl.
 std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);

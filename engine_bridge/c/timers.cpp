@@ -39,7 +39,7 @@ bool Timers::read(const GlFunctions& gl, pld_value what, uint64_t& nanoseconds) 
     };
     nanoseconds = 0;
     if (what == PLD_VALUE_NS_RESOLVE) nanoseconds = between(kResolve, kResolved);
-    for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_RIMS}) {
+    for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}) {
       if (what == PLD_VALUE_NS_BEGIN) nanoseconds += between(markOf(stage, 0), markOf(stage, 1));
       if (what == PLD_VALUE_NS_DRAWS) nanoseconds += between(markOf(stage, 1), markOf(stage, 2));
     }

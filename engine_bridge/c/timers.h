@@ -6,7 +6,7 @@ namespace pellucid::c {
 
 class Timers {
  public:
-  static constexpr int kMarks = 14;  // three a stage: begin, begun, end; then resolve, resolved
+  static constexpr int kMarks = 17;  // three a stage: begin, begun, end; then resolve, resolved
   static constexpr int kFrames = 4;
 
   void create(const GlFunctions& gl);
@@ -16,7 +16,7 @@ class Timers {
   void nextFrame();
   void mark(const GlFunctions& gl, int mark);
   static int markOf(pld_stage stage, int part) { return 3 * static_cast<int>(stage) + part; }
-  static constexpr int kResolve = 12, kResolved = 13;
+  static constexpr int kResolve = 15, kResolved = 16;
 
   // Sum over stages of the time between two parts of a stage, or of the resolve; false when no frame is known yet.
   bool read(const GlFunctions& gl, pld_value what, uint64_t& nanoseconds) const;

@@ -11,6 +11,13 @@ const float PLD_UPSAMPLE_ENOUGH = 0.1f;     // sum of the near shares from which
 const float PLD_UPSAMPLE_TOLERANCE = 0.05f; // relative difference in depth that halves a texel twice
 const float PLD_UPSAMPLE_LEAST = 1e-6f;     // what is left of a texel at quite another depth
 
+// Where a pixel lies among texels, whose samples lie at whole numbers.
+//   pixel  its corner; `inside` of pixels and texels both are sampled; scale: texels a pixel
+PLD_FN vec2 placeInTexels(vec2 pixel, vec2 inside, float scale) {
+  precise vec2 place = (pixel + inside) * scale - inside;
+  return place;
+}
+
 // A low-resolution texel, resolved.
 struct LowTexel {
   vec3 radiance;      // premultiplied: (1 - beta) U + V E, >= 0

@@ -59,8 +59,8 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
   const Case cases[] = {{PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0},
                         {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, all},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all | PLD_FEATURE_RIMS},
-                        {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, PLD_FEATURE_RIMS},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
+                        {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, PLD_FEATURE_DIFFUSION},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION | PLD_FEATURE_SOLIDS},
@@ -77,11 +77,12 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
       info.depth = depth;
       pld_pass* pass = host.create(info);
       ASSERT_NE(pass, nullptr);
-      for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_RIMS})
+      for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW})
         for (const int version : {330, 400, 410, 420, 430, 440, 450, 460}) {
           const char* seam = nullptr;
           const pld_status status = pld_glsl(pass, stage, version, &seam);
           const bool has = stage == PLD_STAGE_LAYERS || (stage == PLD_STAGE_FRONT && one.method == PLD_METHOD_FRONT_TAIL) ||
+                           (stage == PLD_STAGE_LOW && (one.features & PLD_FEATURE_LOW_RESOLUTION)) ||
                            (stage == PLD_STAGE_RIMS && (one.features & PLD_FEATURE_RIMS)) ||
                            (stage == PLD_STAGE_SOLIDS && (one.features & PLD_FEATURE_SOLIDS));
           ASSERT_EQ(status, has ? PLD_OK : PLD_ERROR_ARGUMENT);

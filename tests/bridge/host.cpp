@@ -111,6 +111,7 @@ pld_frame Host::frame() const {
   frame.colour_texture = colour;
   frame.depth_texture = depth;
   frame.occlusion_texture = occlusion;
+  frame.low_factor = 2;
   frame.width = width;
   frame.height = height;
   frame.projection[0] = 2.0f * static_cast<float>(height) / static_cast<float>(width);

@@ -105,8 +105,8 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
   const Kind kinds[] = {
       {"float, all phenomena", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
        PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION |
-           PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS,
-       {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS}},
+           PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
+       {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
       {"half, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, 0, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
       {"published", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION, {PLD_STAGE_LAYERS}}};
   GlContext context;
@@ -139,7 +139,7 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     uint64_t value = 0;
     for (int number = 0; number < 20; ++number) {
       pld_frame frame = host.frame();
-      frame.width = 48 - number;  // the size of a frame may change
+      frame.width = 48 - 2 * number;  // the size of a frame may change
       const pld_shadow_view shadow = plainShadowView();
       ASSERT_EQ(inside([&] { return pld_shadow_begin(pass, &shadow); }), PLD_OK) << pld_message(pass);
       ASSERT_EQ(inside([&] { return pld_shadow_end(pass); }), PLD_OK);

@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define PLD_VERSION_MAJOR 0
-#define PLD_VERSION_MINOR 2 /* 0.2: shadow maps, rims. A library takes hosts of every earlier minor version. */
+#define PLD_VERSION_MINOR 2 /* 0.2: shadow maps, rims, low resolution. A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
 
@@ -83,8 +83,11 @@ typedef PLD_ENUM(pld_feature) {
   PLD_FEATURE_DIFFUSION = 8,
   PLD_FEATURE_DISPERSION = 16, /* refraction of its own for red and blue; not in the published tier */
   PLD_FEATURE_SOLIDS = 32,     /* some fragments hide everything: PLD_STAGE_SOLIDS is drawn before the layers */
-  PLD_FEATURE_RIMS = 64        /* antialiased rims of cut-out leaves take their ambient occlusion from the opaque pixels
+  PLD_FEATURE_RIMS = 64,       /* antialiased rims of cut-out leaves take their ambient occlusion from the opaque pixels
                                   beside them: PLD_STAGE_RIMS is drawn after the layers. Not in the published tier,
+                                  not with PLD_METHOD_FRONT_TAIL */
+  PLD_FEATURE_LOW_RESOLUTION = 128 /* smoke and its like at a part of the resolution: PLD_STAGE_LOW is drawn last. Its
+                                  layers do not refract, diffuse or hide everything. Not in the published tier,
                                   not with PLD_METHOD_FRONT_TAIL */
 } pld_feature;
 
@@ -165,13 +168,16 @@ typedef struct pld_frame {
   float diffusion_k1;      /* metres, > 0; 0.5 */
   uint32_t occlusion_texture; /* PLD_FEATURE_RIMS: red is the ambient occlusion of what is opaque, and of solids, [0,1], 1 open */
   pld_occlusion occlusion;
+  int32_t low_factor; /* PLD_FEATURE_LOW_RESOLUTION: 2, 4 or 8 pixels a texel; width and height are multiples of it */
 } pld_frame;
 
 typedef PLD_ENUM(pld_stage) {
   PLD_STAGE_SOLIDS = 0, /* with PLD_FEATURE_SOLIDS: the same geometry, the nearest fragment that hides everything */
   PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth */
   PLD_STAGE_LAYERS = 2, /* all transparent geometry, in any order */
-  PLD_STAGE_RIMS = 3    /* with PLD_FEATURE_RIMS: the cut-out geometry of the layers, by pldWriteRim() */
+  PLD_STAGE_RIMS = 3,   /* with PLD_FEATURE_RIMS: the cut-out geometry of the layers, by pldWriteRim() */
+  PLD_STAGE_LOW = 4     /* with PLD_FEATURE_LOW_RESOLUTION: geometry of its own, on width and height over low_factor;
+                           pld_end() upsamples what it leaves, as one layer of every pixel */
 } pld_stage;
 
 typedef PLD_ENUM(pld_view) {
@@ -264,7 +270,7 @@ typedef PLD_ENUM(pld_shadow_text) {
 PLD_API uint32_t pld_version(void);
 
 /* Order of calls: create, resize, then frames of { begin, draws, end } for every stage, solids, front, layers, rims,
-   and resolve. resize and destroy lie between frames. A frame may be given up: pld_end(), then begin its first stage again. */
+   low, and resolve. resize and destroy lie between frames. A frame may be given up: pld_end(), then begin its first stage again. */
 PLD_API pld_status pld_create(const pld_create_info* info, pld_pass** pass);
 /* Room for pictures up to width x height. Gives back what the last size took. */
 PLD_API pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height);

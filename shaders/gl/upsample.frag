@@ -1,0 +1,64 @@
+// The low-resolution texels around a pixel, as one layer of its sums: composite/low_resolution.h, where the planes are.
+#include "shared/low_resolution.glsl"
+#include "gl/sums_output.glsl"
+
+layout(binding = 0) uniform sampler2D radianceTexels;  // of shaders/gl/low_texel.frag
+layout(binding = 1) uniform sampler2D opacityTexels;
+layout(binding = 2) uniform sampler2D depthTexels;
+layout(binding = 3) uniform sampler2D opaqueZ;
+layout(binding = 4) uniform sampler2D solid;
+
+uniform ivec2 texelCount;
+uniform float texelsAPixel;  // 1 over the factor
+
+LowSums withTexel(LowSums sums, ivec2 at, float share, float opaque) {
+  if (share <= 0.0f) return sums;
+  vec4 radiance = texelFetch(radianceTexels, at, 0), opacity = texelFetch(opacityTexels, at, 0);
+  vec4 depths = texelFetch(depthTexels, at, 0);
+  LowTexel texel;
+  texel.radiance = radiance.rgb;
+  texel.opacity = opacity.rgb;
+  texel.weight = radiance.a;
+  texel.depthWeight = opacity.a;
+  texel.z = depths.x;
+  texel.nearestZ = depths.y;
+  return addTexel(sums, texel, share, standingBefore(texel, opaque, depths.z));
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float opaque = texelFetch(opaqueZ, pixel, 0).r;
+#ifndef NO_SOLIDS
+  opaque = min(opaque, texelFetch(solid, pixel, 0).a);
+#endif
+  vec2 place = placeInTexels(vec2(pixel), vec2(0.5f), texelsAPixel);
+  ivec2 centre = ivec2(floor(place + vec2(0.5f)));
+  ivec2 last = texelCount - 1;
+  LowSums sums = noTexels();
+  int tent = int(ceil(PLD_UPSAMPLE_TENT));
+  for (int j = max(centre.y - tent, 0); j <= min(centre.y + tent, last.y); ++j)
+    for (int i = max(centre.x - tent, 0); i <= min(centre.x + tent, last.x); ++i) {
+      float z = texelFetch(depthTexels, ivec2(i, j), 0).z;
+      sums = withTexel(sums, ivec2(i, j), upsampleShare(vec2(float(i), float(j)) - place, opaque, z), opaque);
+    }
+  float wide = wideWeight(sums.share);
+  if (wide > 0.0f)
+    for (int j = max(centre.y - PLD_UPSAMPLE_REACH, 0); j <= min(centre.y + PLD_UPSAMPLE_REACH, last.y); ++j)
+      for (int i = max(centre.x - PLD_UPSAMPLE_REACH, 0); i <= min(centre.x + PLD_UPSAMPLE_REACH, last.x); ++i) {
+        float z = texelFetch(depthTexels, ivec2(i, j), 0).z;
+        sums = withTexel(sums, ivec2(i, j), wideShare(vec2(float(i), float(j)) - place, opaque, z, wide), opaque);
+      }
+  LowLayer layer = lowLayerOf(sums);
+  if (!layer.shows) discard;
+  writeOitSums(lowLayerSums(layer, NORMALISATION), sums.nearestZ);
+#ifdef SCATTER
+  nearestZ.y = intBitsToFloat(0x7f800000);
+  refractionSum = vec4(0.0f);
+#endif
+#ifdef DISPERSION
+  dispersionSum = vec4(0.0f);
+#endif
+#ifdef HALF
+  clampToHalf();
+#endif
+}

@@ -1,0 +1,211 @@
+// Layers at low resolution through the C library against the rooms: tested, resolved, upsampled and entered alike.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "composite/fold.h"
+#include "composite/low_resolution.h"
+#include "composite/methods/method.h"
+#include "composite/resolve.h"
+#include "tests/bridge/host.h"
+#include "tests/support/random.h"
+
+namespace pellucid::test {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f};
+
+struct Wanted {
+  const char* what;
+  bool coloured, refracts, diffuses, solids;
+  int factor;
+};
+
+FragmentLists listsOf(const Window& window, Random& random, const Wanted& wanted, bool low, const Image<float>& opaqueZ) {
+  FragmentLists lists;
+  lists.window = window;
+  lists.solid = Image<glm::vec4>(window.width(), window.height(), glm::vec4(0, 0, 0, INFINITY));
+  lists.offsets.push_back(0);
+  for (int y = 0; y < window.height(); ++y)
+    for (int x = 0; x < window.width(); ++x) {
+      // Smoke here, none there; glass in full resolution anywhere.
+      const std::uint32_t layers = low ? ((x / 3 + y / 2) % 3 == 0 ? 0 : random.below(6)) : random.below(3);
+      for (std::uint32_t i = 0; i < layers; ++i) {
+        Fragment one{};
+        one.coverage = random.below(8) == 0 ? 0.0f : .1f + .8f * random.uniformf();
+        const float grey = random.uniformf();
+        one.transmission = wanted.coloured ? glm::vec3(random.uniformf(), random.uniformf(), grey) : glm::vec3(.9f * grey);
+        one.radiance = glm::vec3(random.uniformf(), 4 * random.uniformf(), .1f);
+        one.z = 1.5f + 3.0f * random.uniformf();
+        if (!low && wanted.refracts && random.below(2)) one.offset = glm::vec2(10 * random.uniformf() - 5, 8 * random.uniformf() - 4);
+        if (!low && wanted.diffuses && random.below(3) == 0) one.variance = 20.0f * random.uniformf();
+        if (one.z <= opaqueZ.at(x, y)) lists.fragments.push_back(one);
+      }
+      if (!low && wanted.solids && random.below(4) == 0) {
+        Fragment solid{};
+        solid.radiance = glm::vec3(random.uniformf(), 1.0f, 0.25f);
+        solid.coverage = 1.0f;
+        solid.z = 1.2f + .2f * random.uniformf();
+        lists.fragments.push_back(solid);
+        lists.solid.at(x, y) = glm::vec4(solid.radiance, solid.z);
+      }
+      lists.offsets.push_back(lists.fragments.size());
+    }
+  return lists;
+}
+
+OitPlanes folded(const FragmentLists& lists) {
+  OitPlanes planes = emptyPlanes(lists.window, lists.window);
+  planes.info.weight = kWeight;
+  foldFragments(lists, kWeight, shading::PLD_NORMALISE_SPECTRAL, planes);
+  return planes;
+}
+
+TEST(BridgeLow, UpsampledLayersAreThoseOfTheRooms) {
+  GlContext context;
+  for (const Wanted& wanted : {Wanted{"coloured, 1/2", true, false, false, false, 2}, Wanted{"coloured, solids, 1/4", true, false, false, true, 4},
+                               Wanted{"coloured, 1/8", true, false, false, false, 8}, Wanted{"grey, 1/4", false, false, false, false, 4},
+                               Wanted{"grey, refraction, diffusion, solids, 1/2", false, true, true, true, 2},
+                               Wanted{"coloured, refraction, diffusion, 1/4", true, true, true, false, 4}}) {
+    Random random(5);
+    GBuffer gbuffer;
+    gbuffer.display = gbuffer.data = {0, 0, kWidth, kHeight};
+    gbuffer.beauty = Image<glm::vec4>(kWidth, kHeight);
+    gbuffer.viewZ = Image<float>(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        gbuffer.beauty.at(x, y) = glm::vec4(random.uniformf(), random.uniformf(), (x / 9 + y / 7) % 2, 1.0f);
+        const bool post = x % 23 < 3 || (x > 50 && x < 66 && y > 20);
+        gbuffer.viewZ.at(x, y) = post ? 2.5f : y > 40 ? 3.0f + .02f * static_cast<float>(y) : INFINITY;
+      }
+    // Glass stands before all that is opaque; the rooms fold every fragment that the lists hold.
+    const FragmentLists full = listsOf(gbuffer.data, random, wanted, false, gbuffer.viewZ);
+    OitPlanes planes = folded(full);
+    const Image<glm::vec4> without = compose(resolveOver(planes, {}, {}, gbuffer), gbuffer).rgba;
+    const LowView view = lowViewOf(gbuffer, full.solid, Camera{}, wanted.factor);
+    const FragmentLists smoke = listsOf(view.gbuffer.data, random, wanted, true, view.gbuffer.viewZ);
+    addLowResolution(folded(smoke), view, {.5, .5}, planes);
+    const Image<glm::vec4> expected = compose(resolveOver(planes, {}, {}, gbuffer), gbuffer).rgba;
+
+    Host host(kWidth, kHeight);
+    host.upload(gbuffer);
+    pld_create_info info = host.info();
+    info.features = PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_LIGHT;
+    if (wanted.coloured) info.features |= PLD_FEATURE_COLOURED;
+    if (wanted.refracts) info.features |= PLD_FEATURE_REFRACTION;
+    if (wanted.diffuses) info.features |= PLD_FEATURE_DIFFUSION;
+    if (wanted.solids) info.features |= PLD_FEATURE_SOLIDS;
+    pld_pass* pass = host.create(info);
+    ASSERT_NE(pass, nullptr);
+    pld_frame frame = host.frame();
+    frame.low_factor = wanted.factor;
+    if (wanted.solids) replay(pass, full, frame, {PLD_STAGE_SOLIDS});
+    replay(pass, full, frame, {PLD_STAGE_LAYERS});
+    replay(pass, smoke, frame, {PLD_STAGE_LOW});
+    const pld_target target = host.target();
+    ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
+    const std::vector<float> found = host.picture();
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+    std::size_t words = 0, changed = 0;
+    double worst = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const float value = expected[i / 4][static_cast<int>(i % 4)];
+      words += std::memcmp(&value, &found[i], sizeof(value)) != 0;
+      worst = std::max(worst, std::abs(static_cast<double>(value) - static_cast<double>(found[i])));
+      changed += value != without[i / 4][static_cast<int>(i % 4)];
+    }
+    std::printf("low resolution, %s: %zu of %zu words under smoke; %zu differ from the rooms', by at most %.2g\n", wanted.what, changed,
+                found.size(), words, worst);
+    EXPECT_GT(changed, found.size() / 3);
+    EXPECT_EQ(words, 0u);
+    pld_destroy(&pass);
+  }
+}
+
+// A host's geometry under its own projection falls on the texels that the rooms' low view has: an even veil is the same
+// veil at every factor.
+TEST(BridgeLow, AnEvenVeilIsItselfAtEveryFactor) {
+  GlContext context;
+  std::vector<float> pictures[4];
+  const int factors[] = {1, 2, 4, 8};
+  for (int k = 0; k < 4; ++k) {
+    Host host(kWidth, kHeight);
+    pld_create_info info = host.info();
+    info.features = PLD_FEATURE_LOW_RESOLUTION;
+    pld_pass* pass = host.create(info);
+    ASSERT_NE(pass, nullptr);
+    GLuint array = 0;
+    glCreateVertexArrays(1, &array);
+    pld_frame frame = host.frame();
+    frame.low_factor = factors[std::max(k, 1)];
+    for (const pld_stage stage : {PLD_STAGE_LAYERS, PLD_STAGE_LOW}) {
+      const char* seam = nullptr;
+      ASSERT_EQ(pld_glsl(pass, stage, 330, &seam), PLD_OK) << pld_message(pass);
+      const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam +
+                                                                "void main() { pldWriteFragment(pldSurface(vec3(0.2, 0.1, 0.4), 0.5, "
+                                                                "vec3(0.5), vec3(0.0, 0.0, -3.0))); }\n");
+      ASSERT_EQ(pld_connect(pass, program), PLD_OK);
+      ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+      glBindVertexArray(array);
+      glUseProgram(program);
+      if ((stage == PLD_STAGE_LAYERS) == (k == 0)) glDrawArrays(GL_TRIANGLES, 0, 3);
+      ASSERT_EQ(pld_end(pass), PLD_OK);
+      glDeleteProgram(program);
+    }
+    const pld_target target = host.target();
+    ASSERT_EQ(pld_resolve(pass, &target), PLD_OK);
+    pictures[k] = host.picture();
+    pld_destroy(&pass);
+  }
+  for (int k = 1; k < 4; ++k) {
+    double worst = 0;
+    for (std::size_t i = 0; i < pictures[0].size(); ++i)
+      worst = std::max(worst, std::abs(static_cast<double>(pictures[0][i]) - static_cast<double>(pictures[k][i])));
+    std::printf("an even veil at 1/%d: off by at most %.2g\n", factors[k], worst);
+    EXPECT_LT(worst, 1e-6);
+  }
+  EXPECT_NE(pictures[0][0], 0.5f);
+}
+
+TEST(BridgeLow, WrongFactorsAreRefused) {
+  GlContext context;
+  Host host(18, 16);
+  pld_create_info info = host.info();
+  info.features = PLD_FEATURE_LOW_RESOLUTION;
+  pld_pass* pass = nullptr;
+  pld_create_info wrong = info;
+  wrong.tier = PLD_TIER_PUBLISHED;
+  EXPECT_EQ(pld_create(&wrong, &pass), PLD_ERROR_UNSUPPORTED);
+  wrong = info;
+  wrong.method = PLD_METHOD_FRONT_TAIL;
+  EXPECT_EQ(pld_create(&wrong, &pass), PLD_ERROR_UNSUPPORTED);
+  pass = host.create(info);
+  ASSERT_NE(pass, nullptr);
+  pld_frame frame = host.frame();
+  for (const int factor : {-2, 0, 1, 3, 16}) {
+    frame.low_factor = factor;
+    EXPECT_EQ(pld_begin(pass, PLD_STAGE_LAYERS, &frame), PLD_ERROR_ARGUMENT) << factor;
+  }
+  frame.low_factor = 4;
+  EXPECT_EQ(pld_begin(pass, PLD_STAGE_LAYERS, &frame), PLD_ERROR_SIZE);
+  frame.low_factor = 2;
+  EXPECT_EQ(pld_begin(pass, PLD_STAGE_LOW, &frame), PLD_ERROR_ORDER);
+  ASSERT_EQ(pld_begin(pass, PLD_STAGE_LAYERS, &frame), PLD_OK) << pld_message(pass);
+  ASSERT_EQ(pld_end(pass), PLD_OK);
+  frame.width = 16;
+  EXPECT_EQ(pld_begin(pass, PLD_STAGE_LOW, &frame), PLD_ERROR_SIZE);
+  const pld_target target = host.target();
+  EXPECT_EQ(pld_resolve(pass, &target), PLD_ERROR_ORDER);
+  frame.width = 18;
+  ASSERT_EQ(pld_begin(pass, PLD_STAGE_LOW, &frame), PLD_OK) << pld_message(pass);
+  ASSERT_EQ(pld_end(pass), PLD_OK);
+  ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
+  EXPECT_EQ(host.picture(), readTexture(host.colour, 18, 16, GL_RGBA));  // nothing was drawn
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  pld_destroy(&pass);
+}
+
+}  // namespace
+}  // namespace pellucid::test
