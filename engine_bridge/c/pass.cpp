@@ -173,6 +173,10 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
       if (!timers_.on()) return fail(PLD_ERROR_UNSUPPORTED, "pld_query: times need PLD_FLAG_TIMERS");
       if (!timers_.read(gl, what, value)) return fail(PLD_ERROR_ORDER, "pld_query: no frame's times are known yet");
       return PLD_OK;
+    case PLD_VALUE_NS_SHADOW:
+      if (!timers_.on()) return fail(PLD_ERROR_UNSUPPORTED, "pld_query: times need PLD_FLAG_TIMERS");
+      if (!timers_.readFace(gl, value)) return fail(PLD_ERROR_ORDER, "pld_query: no face's time is known yet");
+      return PLD_OK;
     case PLD_VALUE_SHADOW_TEXTURE:
       value = shadowMaps_;
       return PLD_OK;

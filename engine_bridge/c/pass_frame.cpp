@@ -284,13 +284,13 @@ pld_status pld_pass::darkenRims() {
 
 pld_status pld_pass::end() {
   if (step_ != Step::open) return fail(PLD_ERROR_ORDER, "pld_end: without a pld_begin");
-  timers_.mark(gl, Timers::markOf(stage_, 2));
   if (frameDepthAttachment_) {
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frameOf(stage_));
     gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, 0, 0);
   }
   const pld_status status = stage_ == PLD_STAGE_RIMS ? darkenRims() : PLD_OK;
   if (stage_ == PLD_STAGE_LOW) addLow();
+  timers_.mark(gl, Timers::markOf(stage_, 2));
   if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
   popGroup();
   stagesDone_ |= 1u << stage_;

@@ -273,6 +273,7 @@ pld_status pld_pass::shadowBegin(const pld_shadow_view& view) {
     }
   }
   pushGroup("pellucid shadow");
+  timers_.beginFace(gl);
   const bool naive = shadowInfo_.form == PLD_SHADOW_NAIVE || shadowInfo_.form == PLD_SHADOW_PUBLISHED;
   const glm::dvec2 metric = metricOf(view);
   GLfloat block[8] = {static_cast<float>(metric.x), static_cast<float>(metric.y), view.kind == PLD_LIGHT_LOCAL ? 1.0f : 0.0f,
@@ -367,6 +368,7 @@ pld_status pld_pass::shadowEnd() {
   }
   filterShadow(shadowView_.first_face + shadowView_.face);
   setShadowTable(shadowView_);
+  timers_.endFace(gl);
   if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
   popGroup();
   shadowOpen_ = false;

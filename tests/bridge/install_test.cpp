@@ -6,6 +6,7 @@
 #include <regex>
 #include <set>
 
+#include "engine_bridge/include/pellucid/pellucid.h"
 #include "tests/support/program.h"
 
 namespace pellucid::test {
@@ -80,6 +81,8 @@ TEST(BridgeInstall, AnOutsidePkgConfigProjectBuildsAndRenders) {
   const Ended drawn = shell("'" + folder + "/outside'", folder);
   EXPECT_EQ(drawn.code, 0) << drawn.out;
   EXPECT_NE(drawn.out.find("rendered"), std::string::npos) << drawn.out;
+  const Ended version = shell("PKG_CONFIG_PATH='" + folder + "/prefix/lib/pkgconfig' pkg-config --modversion pellucid", folder);
+  EXPECT_EQ(version.out, std::to_string(PLD_VERSION_MAJOR) + "." + std::to_string(PLD_VERSION_MINOR) + "." + std::to_string(PLD_VERSION_PATCH) + "\n");
   const Ended rooms = shell("c++ -o '" + folder + "/rooms' '" PELLUCID_SOURCE_DIR "/tests/bridge/outside/rooms.cpp' $(" + config +
                                 "pellucid-rooms) && '" + folder + "/rooms'",
                             folder);

@@ -78,6 +78,8 @@ TEST(BridgeShadow, WrongCallsAreRefused) {
   EXPECT_EQ(pld_shadow_glsl(nullptr, PLD_SHADOW_TEXT_CASTER, 330, &text), PLD_ERROR_ARGUMENT);
   expectRefused(pld_shadow_begin(pass, &sun), PLD_ERROR_ORDER, "begin before resize");
   expectRefused(pld_shadow_end(pass), PLD_ERROR_ORDER, "end before begin");
+  uint64_t time = 0;
+  expectRefused(pld_query(pass, PLD_VALUE_NS_SHADOW, &time), PLD_ERROR_UNSUPPORTED, "no timers");
   expectRefused(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_LOOKUP, 330, &text), PLD_ERROR_ORDER, "text before resize");
   const auto info = [&](auto change, pld_status expected, const char* what) {
     pld_shadow_info changed = good;

@@ -197,6 +197,11 @@ TEST(BridgeState, ShadowCallsLeaveGlAsTheyFoundIt) {
       ASSERT_EQ(pld_shadow_end(pass), PLD_OK) << pld_message(pass);
       watch.unchanged("pld_shadow_begin, draws, pld_shadow_end");
     }
+    glFinish();
+    uint64_t time = 0;
+    EXPECT_EQ(pld_query(pass, PLD_VALUE_NS_SHADOW, &time), PLD_OK) << pld_message(pass);
+    EXPECT_GT(time, 0u);
+    watch.unchanged("pld_query of a face's time");
     const char* lookup = nullptr;
     EXPECT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_LOOKUP, 330, &lookup), PLD_OK);
     const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + lookup +

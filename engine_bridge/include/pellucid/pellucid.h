@@ -210,8 +210,9 @@ typedef PLD_ENUM(pld_value) {
   PLD_VALUE_GEOMETRY_PASSES = 3,
   PLD_VALUE_FIRST_PLANE = 4, /* + i: the GL name of plane i, to look at; 0 where draw buffer i is not used; i < 8 */
   PLD_VALUE_NS_BEGIN = 16,   /* nanoseconds on the device, of the newest frame that is known; PLD_FLAG_TIMERS */
-  PLD_VALUE_NS_DRAWS = 17,   /* from the end of pld_begin() to pld_end(), all stages */
+  PLD_VALUE_NS_DRAWS = 17,   /* from the end of pld_begin() to that of pld_end(), all stages */
   PLD_VALUE_NS_RESOLVE = 18,
+  PLD_VALUE_NS_SHADOW = 19, /* of the newest face that is known, from pld_shadow_begin() to pld_shadow_end(), draws included */
   PLD_VALUE_SHADOW_TEXTURE = 24, /* GL names, 0 before pld_shadow_resize(): the GL_TEXTURE_2D_ARRAY of the maps */
   PLD_VALUE_SHADOW_BUFFER = 25,  /* the uniform buffer of their table */
   PLD_VALUE_SHADOW_BYTES = 26    /* of all textures of the maps */
