@@ -266,30 +266,48 @@ TEST(BridgeState, ThePictureDoesNotDependOnTheHostsState) {
 
 // A host that puts its state back itself gets a pass that asks for none of it.
 TEST(BridgeState, AHostThatRestoresGetsTheSamePicture) {
-  std::vector<float> pictures[2];
+  std::vector<float> pictures[2], maps[2];
   for (const bool restores : {false, true}) {
     GlContext context;
     Host host(40, 30);
     pld_create_info info = host.info();
+    info.features = PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION;
     info.flags = restores ? static_cast<uint32_t>(PLD_FLAG_HOST_RESTORES) : 0u;
     GLuint array = 0;
     glCreateVertexArrays(1, &array);
     pld_pass* pass = host.create(info);
     ASSERT_NE(pass, nullptr);
-    const pld_frame frame = host.frame();
-    ASSERT_EQ(pld_begin(pass, PLD_STAGE_LAYERS, &frame), PLD_OK);
+    const pld_shadow_info room = shadowInfo(PLD_SHADOW_VARIANCE, 64, 1, 1, true);
+    ASSERT_EQ(pld_shadow_resize(pass, &room), PLD_OK);
+    const char* seam = nullptr;
+    ASSERT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_CASTER, 450, &seam), PLD_OK);
+    const GLuint caster = makeProgram(kFullscreenVertex, std::string("#version 450 core\n") + seam + kPlainCaster);
+    const pld_shadow_view view = plainShadowView();
+    ASSERT_EQ(pld_shadow_begin(pass, &view), PLD_OK);
+    glUseProgram(caster);
     glBindVertexArray(array);
-    drawSomething(pass, PLD_STAGE_LAYERS);
-    ASSERT_EQ(pld_end(pass), PLD_OK);
-    GLint bound = 0;
-    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
-    EXPECT_EQ(bound != 0, restores);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    ASSERT_EQ(pld_shadow_end(pass), PLD_OK);
+    maps[restores] = shadowTexels(pass, 16, 3);
+    const pld_frame frame = host.frame();
+    for (const pld_stage stage : {PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}) {
+      ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK);
+      glBindVertexArray(array);
+      drawSomething(pass, stage);
+      ASSERT_EQ(pld_end(pass), PLD_OK);
+      GLint bound = 0;
+      glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+      EXPECT_EQ(bound != 0, restores);
+    }
     const pld_target target = host.target();
     ASSERT_EQ(pld_resolve(pass, &target), PLD_OK);
     pictures[restores] = host.picture();
     pld_destroy(&pass);
   }
   EXPECT_EQ(pictures[0], pictures[1]);
+  EXPECT_EQ(maps[0], maps[1]);
+  EXPECT_NE(pictures[0][0], 0.5f);
+  EXPECT_GT(maps[0][0], 0.0f);
 }
 
 }  // namespace

@@ -300,7 +300,7 @@ PLD_API pld_status pld_shadow_resize(pld_pass* pass, const pld_shadow_info* info
 PLD_API pld_status pld_shadow_begin(pld_pass* pass, const pld_shadow_view* view);
 /* Filters the face, and puts back the state that pld_shadow_begin() found. */
 PLD_API pld_status pld_shadow_end(pld_pass* pass);
-/* As pld_glsl(). */
+/* As pld_glsl(). The texts fit the info of the last pld_shadow_resize(), and no other. */
 PLD_API pld_status pld_shadow_glsl(pld_pass* pass, pld_shadow_text which, int32_t version, const char** text);
 
 /* What the last call that failed on this pass said: one sentence; "" when none did. Lives until the next call. */
