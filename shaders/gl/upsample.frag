@@ -11,10 +11,13 @@ layout(binding = 4) uniform sampler2D solid;
 uniform ivec2 texelCount;
 uniform float texelsAPixel;  // 1 over the factor
 
-LowSums withTexel(LowSums sums, ivec2 at, float share, float opaque) {
+LowSums withTexel(LowSums sums, ivec2 at, vec4 depths, float share, float opaque) {
   if (share <= 0.0f) return sums;
+  if (depths.w == 0.0f) {
+    sums.share = sums.share + share;  // all that an empty texel adds
+    return sums;
+  }
   vec4 radiance = texelFetch(radianceTexels, at, 0), opacity = texelFetch(opacityTexels, at, 0);
-  vec4 depths = texelFetch(depthTexels, at, 0);
   LowTexel texel;
   texel.radiance = radiance.rgb;
   texel.opacity = opacity.rgb;
@@ -35,18 +38,20 @@ void main() {
   ivec2 centre = ivec2(floor(place + vec2(0.5f)));
   ivec2 last = texelCount - 1;
   LowSums sums = noTexels();
-  int tent = int(ceil(PLD_UPSAMPLE_TENT));
-  for (int j = max(centre.y - tent, 0); j <= min(centre.y + tent, last.y); ++j)
-    for (int i = max(centre.x - tent, 0); i <= min(centre.x + tent, last.x); ++i) {
-      float z = texelFetch(depthTexels, ivec2(i, j), 0).z;
-      sums = withTexel(sums, ivec2(i, j), upsampleShare(vec2(float(i), float(j)) - place, opaque, z), opaque);
+  // Beyond, the tent is 0.
+  ivec2 first = max(ivec2(ceil(place - PLD_UPSAMPLE_TENT)), ivec2(0));
+  ivec2 end = min(ivec2(floor(place + PLD_UPSAMPLE_TENT)), last);
+  for (int j = first.y; j <= end.y; ++j)
+    for (int i = first.x; i <= end.x; ++i) {
+      vec4 depths = texelFetch(depthTexels, ivec2(i, j), 0);
+      sums = withTexel(sums, ivec2(i, j), depths, upsampleShare(vec2(float(i), float(j)) - place, opaque, depths.z), opaque);
     }
   float wide = wideWeight(sums.share);
   if (wide > 0.0f)
     for (int j = max(centre.y - PLD_UPSAMPLE_REACH, 0); j <= min(centre.y + PLD_UPSAMPLE_REACH, last.y); ++j)
       for (int i = max(centre.x - PLD_UPSAMPLE_REACH, 0); i <= min(centre.x + PLD_UPSAMPLE_REACH, last.x); ++i) {
-        float z = texelFetch(depthTexels, ivec2(i, j), 0).z;
-        sums = withTexel(sums, ivec2(i, j), wideShare(vec2(float(i), float(j)) - place, opaque, z, wide), opaque);
+        vec4 depths = texelFetch(depthTexels, ivec2(i, j), 0);
+        sums = withTexel(sums, ivec2(i, j), depths, wideShare(vec2(float(i), float(j)) - place, opaque, depths.z, wide), opaque);
       }
   LowLayer layer = lowLayerOf(sums);
   if (!layer.shows) discard;
