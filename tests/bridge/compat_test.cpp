@@ -4,6 +4,7 @@
 
 #include "tests/bridge/gl_state.h"
 #include "tests/bridge/host.h"
+#include "tests/bridge/shadow_casters.h"
 
 namespace pellucid::test {
 namespace {
@@ -27,7 +28,7 @@ class CompatibleContext {
 };
 
 constexpr uint32_t kAll = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
-                          PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS;
+                          PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION;
 
 // A triangle of generic attributes in vertex array 0, with a texture on unit 0.
 const char* const kVertex = R"(#version 330 compatibility
@@ -60,7 +61,7 @@ TEST(BridgeCompatibility, DrawsWithWhatWasBoundBeforeBegin) {
   pld_pass* pass = host.create(info);
   ASSERT_NE(pass, nullptr);
   const pld_frame frame = host.frame();
-  for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS}) {
+  for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}) {
     const char* seam = nullptr;
     ASSERT_EQ(pld_glsl(pass, stage, 330, &seam), PLD_OK);
     const GLuint program = makeProgram(kVertex, std::string("#version 330 compatibility\n") + seam + kMain);
@@ -77,11 +78,29 @@ TEST(BridgeCompatibility, DrawsWithWhatWasBoundBeforeBegin) {
   const GlState before = glState();
   ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
   EXPECT_EQ(changes(before, glState()).size(), 0u);
-  // One layer of light .1 green and net coverage .25 over the picture's .5, .4, .3.
+  // Two layers, one of low resolution, of light .1 green and net coverage .25 over the picture's .5, .4, .3: their mean is
+  // .1 / .25.
   const std::vector<float> picture = host.picture();
-  EXPECT_NEAR(picture[0], 0.5f * 0.75f, 1e-6f);
-  EXPECT_NEAR(picture[1], 0.4f * 0.75f + 0.1f, 1e-6f);
-  EXPECT_NEAR(picture[2], 0.3f * 0.75f, 1e-6f);
+  constexpr float left = 0.75f * 0.75f;
+  EXPECT_NEAR(picture[0], 0.5f * left, 1e-6f);
+  EXPECT_NEAR(picture[1], 0.4f * left + 0.4f * (1.0f - left), 1e-6f);
+  EXPECT_NEAR(picture[2], 0.3f * left, 1e-6f);
+  // And a shadow map.
+  const pld_shadow_info room = shadowInfo(PLD_SHADOW_VARIANCE, 64, 1, 1, true);
+  ASSERT_EQ(pld_shadow_resize(pass, &room), PLD_OK) << pld_message(pass);
+  const char* caster = nullptr;
+  ASSERT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_CASTER, 330, &caster), PLD_OK);
+  const GLuint casters = makeProgram(kVertex, std::string("#version 330 compatibility\n") + caster + kPlainCaster);
+  ASSERT_EQ(pld_connect(pass, casters), PLD_OK);
+  glUseProgram(casters);
+  const pld_shadow_view view = plainShadowView();
+  const GlState bound = glState();
+  ASSERT_EQ(pld_shadow_begin(pass, &view), PLD_OK) << pld_message(pass);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  ASSERT_EQ(pld_shadow_end(pass), PLD_OK) << pld_message(pass);
+  EXPECT_EQ(changes(bound, glState()).size(), 0u);
+  const std::vector<float> under = askShadows(pass, room, 0, {0, 0, -5, 0}, true);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(under[static_cast<std::size_t>(c)], 1.0f - 0.5f * (0.75f - 0.25f * static_cast<float>(c)), 1e-3f);
   // A texture of another kind is refused here too, where the driver does not say of what kind a texture is.
   pld_frame wrong = frame;
   glCreateTextures(GL_TEXTURE_3D, 1, &wrong.depth_texture);
