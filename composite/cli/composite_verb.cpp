@@ -124,9 +124,6 @@ void composite(const CompositeFlags& flags) {
       throw UsageError("--sampled-on: found gl with deep EXR, expected cpu: its samples are no triangles");
     if (settings.pass.fog) throw UsageError("--sampled-on: found gl with --fog, expected cpu: fog is no triangle");
     settings.sampler = &sampler.emplace(device(), shot->scene, gbuffer, shot->camera);
-    if (sampler->scatters(settings.pass))
-      throw UsageError(
-          "--sampled-on: found gl, and materials that refract or diffuse, expected cpu, or --refract off --diffusion off");
   }
   std::vector<SystemPass> systems;
   if (flags.systems != "off") {

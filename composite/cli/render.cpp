@@ -156,9 +156,10 @@ std::string weightFlags(const shading::WeightSettings& weight) {
   return fmt::format("--weight {} --weight-range {}:{}", name, weight.rangeNear, weight.rangeFar);
 }
 
-// One pass of samples drawn on the device.
-Veil sampleOnDevice(const RenderSettings& settings, const PassSettings& sample, int pass, const GBuffer& gbuffer,
-                    StochasticMean& mean, PassStatistics& statistics) {
+// One pass of samples drawn on the device. What they show of the background is looked up by the sums' scattering planes:
+// the pixel's scattering layers alone decide, under every method.
+Veil sampleOnDevice(const RenderSettings& settings, TransparentPass& sums, const PassSettings& sample, int pass,
+                    const GBuffer& gbuffer, StochasticMean& mean, PassStatistics& statistics) {
   const StochasticSettings& chosen = *settings.stochastic;
   StochasticPassSettings samples;
   samples.samples = chosen.samples;
@@ -168,7 +169,22 @@ Veil sampleOnDevice(const RenderSettings& settings, const PassSettings& sample, 
   samples.winnersOnly = chosen.variant != StochasticSettings::Variant::depth;
   samples.seed = chosen.seed;
   Veil veil(gbuffer.data.width(), gbuffer.data.height());
-  mean.add(settings.sampler->sample(sample, samples), veil);
+  StochasticPlanes planes = settings.sampler->sample(sample, samples);
+  if (sums.scatters(sample)) {
+    PassSettings unlit = sample;  // of these sums only where they bend and spread is read
+    unlit.shadows = nullptr;
+    unlit.shadowRays = nullptr;
+    unlit.occlusion.occluders = nullptr;
+    OitPlanes scattering = sums.accumulate(unlit);
+    const Backdrop backdrop = backdropOf(gbuffer, planes.solid);
+    scattering.solid = planes.solid;
+    hideSolids(scattering);
+    planes.solid = scattering.solid;
+    mean.add(planes, veil);
+    showThrough(Lookups(backdrop, scattering, settings.lookup), veil);
+  } else {
+    mean.add(planes, veil);
+  }
   const StochasticPassStatistics& done = settings.sampler->statistics();
   statistics.fragments = done.fragments;
   statistics.tiles = done.bands;
@@ -225,7 +241,7 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
       stages.time("average", [&] { mean.add(veil); });
     } else if (stochastic && settings.sampler) {
       const Veil veil = stages.time("sample", [&] {
-        return sampleOnDevice(settings, sample, i, gbuffer, *stochastic, statistics);
+        return sampleOnDevice(settings, *pass, sample, i, gbuffer, *stochastic, statistics);
       });
       stages.time("average", [&] { mean.add(veil); });
     } else if (settings.sortedTruth || settings.listMethod || stochastic || settings.tolerance || settings.exactSums ||
@@ -253,6 +269,10 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
   return stages.time("average", [&] {
     Veil veil = mean.finish();
     if (stochastic) stochastic->finish(veil);
+    if (stochastic && settings.stochastic->adaptive > 0.0 && stochastic->pixelsSampled() > 0)
+      spdlog::info("samples: {:.1f} a pixel on the average of those that hold a layer",
+                   static_cast<double>(stochastic->samplesTaken()) * settings.samples /
+                       static_cast<double>(stochastic->pixelsSampled()));
     return veil;
   });
 }

@@ -14,6 +14,7 @@
 #include "engine_bridge/gl/shadow_pass.h"
 #include "engine_bridge/scene/blocks.h"
 #include "engine_bridge/scene/opaque_planes.h"
+#include "engine_bridge/scene/particle_grid.h"
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/view_point.h"
@@ -21,6 +22,7 @@
 namespace pellucid::cli {
 namespace {
 
+constexpr int kParticleTexels = 24;  // a particle's width: the tent has 15
 constexpr int kOpaqueSize = 2048;  // texels along an edge of the maps that shadow transparent things
 
 std::pair<std::string, std::string> nameAndLayer(const std::string& text) {
@@ -90,17 +92,21 @@ ShadowMapSettings::Form formOf(const std::string& shadows) {
   return Form::variance;
 }
 
+ShadowRays::Casters castersOf(const std::string& shadows) {
+  return shadows == "exact:opaque" ? ShadowRays::Casters::opaque : ShadowRays::Casters::transparent;
+}
+
 std::shared_ptr<const ShadowMaps> drawMaps(const ShadowFlags& flags, const Shot& shot, std::uint32_t seed,
                                            GlContext& device) {
   ShadowMapSettings settings;
   settings.form = formOf(flags.shadows);
-  settings.size = flags.size;
-  settings.opaqueSize = std::min(flags.size, kOpaqueSize);
+  settings.size = flags.sizeFor(shot.scene);
+  settings.opaqueSize = std::min(settings.size, kOpaqueSize);
   settings.seed = seed;
   ShadowMapStatistics statistics;
   auto maps = std::make_shared<const ShadowMaps>(
       renderShadowMaps(device, shot.scene, shot.camera, &shot.opaque.gbuffer, settings, &statistics));
-  spdlog::info("shadow maps: {} faces, {} MiB, drawn in {:.2f} s, filtered in {:.2f} s", statistics.faces,
+  spdlog::info("shadow maps of {0}x{0}: {1} faces, {2} MiB, drawn in {3:.2f} s, filtered in {4:.2f} s", settings.size, statistics.faces,
                statistics.bytes >> 20, statistics.drawSeconds, statistics.filterSeconds);
   return maps;
 }
@@ -130,16 +136,16 @@ ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
 void ShadowFlags::addTo(CLI::App& verb) {
   verb.add_option("--shadows", shadows,
                   "Shadows of transparent things on the opaque picture and on each other, from the glTF's punctual lights; exact: by "
-                  "rays, one for each light and fragment; stochastic: by prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
+                  "rays, one for each light and fragment; exact:opaque: as if what covers half hid all; stochastic: by prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
                   "corrected: maps without a filter, percentage closer")
-      ->check(CLI::IsMember({"off", "exact", "stochastic", "stochastic:published", "stochastic:naive",
+      ->check(CLI::IsMember({"off", "exact", "exact:opaque", "stochastic", "stochastic:published", "stochastic:naive",
                              "stochastic:stratified", "stochastic:corrected"}))
       ->capture_default_str();
   sizeOption_ = verb.add_option("--shadow-size", size,
                                 "Of --shadows stochastic: texels along an edge of a map as drawn, a multiple of 128; "
-                                "prefiltered maps keep a quarter, faces of point lights have half")
-                    ->check(CLI::Range(128, 16384))
-                    ->capture_default_str();
+                                "prefiltered maps keep a quarter, faces of point lights have half; without it 4096, or less where dense particles "
+                                "alone cast, of which one is then 24 texels wide")
+                    ->check(CLI::Range(128, 16384));
   verb.add_option("--light", lights,
                   "GLTFNAME=LAYER: the EXR layer with this light's part of the beauty; light.NAME is found by itself")
       ->allow_extra_args(false);
@@ -148,6 +154,10 @@ void ShadowFlags::addTo(CLI::App& verb) {
   verb.add_option("--shadow-views", views,
                   "Of --shadows stochastic: EXR to write what the maps hold to, for each light the casters' depth and what "
                   "they hide; of stochastic:naive texel by texel");
+}
+
+int ShadowFlags::sizeFor(const Scene& scene) const {
+  return sizeOption_ && sizeOption_->count() > 0 ? size : particleMapSize(scene, kParticleTexels, size);
 }
 
 void ShadowFlags::check() const {
@@ -187,7 +197,7 @@ ShadowResult castShadows(const ShadowFlags& flags, Shot& shot, int samples, std:
 
   std::optional<ParticleShadows> particles;
   if (flags.exact())
-    result.rays = std::make_shared<const ShadowRays>(shot.scene, shot.camera);
+    result.rays = std::make_shared<const ShadowRays>(shot.scene, shot.camera, castersOf(flags.shadows));
   else
     result.maps = drawMaps(flags, shot, seed, device());
   const ShadowRays* rays = result.rays.get();

@@ -21,8 +21,9 @@ struct ShadowFlags {
   std::string views;  // file, or ""
   void addTo(CLI::App& verb);
   bool on() const { return shadows != "off"; }
-  bool exact() const { return shadows == "exact"; }
+  bool exact() const { return shadows == "exact" || shadows == "exact:opaque"; }  // by rays
   bool mapped() const { return on() && !exact(); }
+  int sizeFor(const Scene& scene) const;  // --shadow-size, or what the scene's casters want
   void check() const;  // throws UsageError for flags that mean nothing without --shadows, or are not NAME=LAYER
 
  private:

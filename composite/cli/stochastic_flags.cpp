@@ -29,6 +29,10 @@ void StochasticFlags::addTo(CLI::App& verb) {
                                                "together; without it the first multiple of --aa from {}",
                                                kDefaultSamples))
                        ->check(CLI::Range(1, StochasticSettings::kMostSamples));
+  adaptiveOption_ = verb.add_option("--samples-adaptive", adaptive,
+                                    "Of --method stochastic: more sets of --samples where they are needed, until the standard "
+                                    "error of a pixel's layers is E times the larger of 1 and their light")
+                        ->check(CLI::Range(1e-6, 1.0));
   seedOption_ = verb.add_option("--seed", seed, "Of --method stochastic and --shadows stochastic: another seed, other noise")
                     ->check(CLI::NonNegativeNumber)
                     ->capture_default_str();
@@ -50,7 +54,7 @@ std::optional<StochasticSettings> StochasticFlags::settings(const std::string& m
                                                             bool shadows) const {
   const std::optional<Variant> variant = stochasticVariant(method);
   if (!variant) {
-    for (const CLI::Option* option : {samplesOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
+    for (const CLI::Option* option : {samplesOption_, adaptiveOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
       if (option && option->count() > 0 && !(shadows && option == seedOption_))
         throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(), method,
                                      kStochasticNames));
@@ -63,6 +67,9 @@ std::optional<StochasticSettings> StochasticFlags::settings(const std::string& m
                                  *variant == Variant::alpha ? "always" : "never"));
   settings.corrected = correction == "on";
   settings.stratified = masks == "stratified";
+  settings.adaptive = adaptive;
+  if (adaptive > 0.0 && onDevice())
+    throw UsageError("--samples-adaptive: found --sampled-on gl, which draws as many samples everywhere, expected cpu");
   settings.seed = static_cast<std::uint32_t>(seed);
   const bool given = samplesOption_ && samplesOption_->count() > 0;
   settings.samples = given ? samples : (std::max(kDefaultSamples, passes) + passes - 1) / passes * passes;

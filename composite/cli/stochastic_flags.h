@@ -14,6 +14,7 @@ inline constexpr const char* kStochasticNames = "stochastic[:basic|alpha|depth]"
 
 struct StochasticFlags {
   int samples = 0, seed = 0;
+  double adaptive = 0.0;
   std::string masks = "stratified", correction = "on", sampledOn = "cpu";
   void addTo(CLI::App& verb);
   bool onDevice() const { return sampledOn == "gl"; }
@@ -24,7 +25,7 @@ struct StochasticFlags {
 
  private:
   CLI::Option *samplesOption_ = nullptr, *seedOption_ = nullptr, *masksOption_ = nullptr, *correctionOption_ = nullptr,
-              *sampledOption_ = nullptr;
+              *sampledOption_ = nullptr, *adaptiveOption_ = nullptr;
 };
 
 }  // namespace pellucid::cli

@@ -13,6 +13,8 @@ namespace {
 using glm::dvec3;
 using Variant = StochasticSettings::Variant;
 
+constexpr int kLeastSets = 4;  // that a variance is estimated from
+
 bool before(const MethodLayer& a, const MethodLayer& b) {
   if (a.record->z != b.record->z) return a.record->z < b.record->z;
   if (a.record->identity != b.record->identity) return a.record->identity < b.record->identity;
@@ -122,6 +124,56 @@ StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, c
   return sums;
 }
 
+StochasticSums samplePixelAdaptively(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
+                                     const MaskTable& masks, const StochasticShare& share, int& taken) {
+  StochasticSums mean = samplePixel(layers, pixel, settings, masks, share);
+  taken = 1;
+  // A lone layer has no noise where its sums are scaled to the exact opacity.
+  const bool corrected = settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
+  if (layers.size() < (corrected ? 2u : 1u)) return mean;
+  const dvec3 hidden = dvec3(1.0) - mean.beta;
+  // What is noisy: the light, and where nothing scales it the share of the background that shows.
+  const auto noisy = [&](const StochasticSums& sums, dvec3 (&values)[2]) {
+    values[0] = stochasticLight(sums, hidden, settings);
+    values[1] = corrected || settings.variant == Variant::depth ? dvec3(0.0) : sums.empty;
+  };
+  dvec3 value[2], first[2], sum[2] = {dvec3(0.0), dvec3(0.0)}, square[2] = {dvec3(0.0), dvec3(0.0)};
+  noisy(mean, first);
+  StochasticSettings other = settings;
+  const int most = StochasticSettings::kMostSamples / settings.samples;
+  for (; taken < most; ++taken) {
+    if (taken >= kLeastSets) {
+      bool enough = true;
+      for (int v = 0; v < 2; ++v)
+        for (int c = 0; c < 3; ++c) {
+          const double variance = std::max(square[v][c] - sum[v][c] * sum[v][c] / taken, 0.0) / (taken - 1);
+          const double wanted = settings.adaptive * std::max(1.0, std::abs(first[v][c] + sum[v][c] / taken));
+          // Of the mean of `share.step` passes.
+          enough = enough && variance <= wanted * wanted * taken * share.step;
+        }
+      if (enough) break;
+    }
+    other.seed = shading::hashOf(settings.seed ^ shading::hashOf(static_cast<std::uint32_t>(taken)));
+    const StochasticSums next = samplePixel(layers, pixel, other, masks, share);
+    noisy(next, value);
+    for (int v = 0; v < 2; ++v) {
+      const dvec3 apart = value[v] - first[v];  // so that nothing cancels
+      sum[v] += apart;
+      square[v] += apart * apart;
+    }
+    mean.light += next.light;
+    mean.unit += next.unit;
+    mean.added += next.added;
+    mean.empty += next.empty;
+  }
+  const double part = 1.0 / taken;
+  mean.light *= part;
+  mean.unit *= part;
+  mean.added *= part;
+  mean.empty *= part;
+  return mean;
+}
+
 glm::dvec3 stochasticLight(const StochasticSums& sums, const glm::dvec3& hidden, const StochasticSettings& settings) {
   const bool corrected =
       settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
@@ -166,6 +218,7 @@ void StochasticMean::add(int pass, const FragmentLists& lists, const Window& dat
   const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     std::vector<MethodLayer> layers;
+    std::uint64_t samples = 0, pixels = 0;
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < lists.window.width(); ++x) {
         const auto pixel =
@@ -173,10 +226,19 @@ void StochasticMean::add(int pass, const FragmentLists& lists, const Window& dat
         const glm::vec4 solid = lists.solid.at(x, y);
         layersOf(lists, pixel, solid.a, layers);
         if (layers.empty() && !std::isfinite(solid.a)) continue;
-        const StochasticSums sums =
-            samplePixel(layers, {lists.window.x0 + x, lists.window.y0 + y}, settings_, *masks_, {pass, passes_});
+        const glm::ivec2 at(lists.window.x0 + x, lists.window.y0 + y);
+        int sets = 1;
+        const StochasticSums sums = settings_.adaptive > 0.0
+                                        ? samplePixelAdaptively(layers, at, settings_, *masks_, {pass, passes_}, sets)
+                                        : samplePixel(layers, at, settings_, *masks_, {pass, passes_});
+        if (!layers.empty()) {
+          samples += static_cast<std::uint64_t>(sets) * static_cast<std::uint64_t>(settings_.samples / passes_);
+          ++pixels;
+        }
         put(left + x, top + y, sums, solid, layers.empty() ? solid.a : layers.front().record->z, veil);
       }
+    samplesTaken_ += samples;
+    pixelsSampled_ += pixels;
   });
 }
 

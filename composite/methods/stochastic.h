@@ -1,6 +1,7 @@
 // Stochastic transparency (Enderton et al. 2010, ST10): every fragment hides a random share o of a pixel's samples, and
 // the nearest of each sample wins. Right on the average in any order; the rest is noise, which S samples push down.
 #pragma once
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct StochasticSettings {
   bool stratified = true;  // masks; otherwise a coin per sample
   int samples = 64;        // S of a pixel, in all passes together, [1, kMostSamples]
   std::uint32_t seed = 0;
+  // Above 0: a pixel takes more sets of S samples, each with masks of its own, until the standard error of its layers'
+  // light is this part of the larger of 1 and the light, or it holds kMostSamples. Of fragment lists alone.
+  double adaptive = 0.0;
 
   static constexpr int kMostSamples = 4096;
 };
@@ -48,6 +52,11 @@ struct StochasticShare {
 StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
                            const MaskTable& masks, const StochasticShare& share);
 
+// Averages sets of samples until the standard error is low, as StochasticSettings::adaptive says.
+//   taken   how many sets
+StochasticSums samplePixelAdaptively(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
+                                     const MaskTable& masks, const StochasticShare& share, int& taken);
+
 // ST10 sections 3.3, 3.4 and 4: the layers' light after correction.
 //   hidden  exact net opacity 1 - beta, filtered over the pixel's passes
 glm::dvec3 stochasticLight(const StochasticSums& sums, const glm::dvec3& hidden, const StochasticSettings& settings);
@@ -64,6 +73,9 @@ class StochasticMean {
   void add(const StochasticPlanes& planes, Veil& veil);
   // Adds the layers' light to the mean of those veils.
   void finish(Veil& mean) const;
+  // Samples of all pixels of lists that hold a layer, and those pixels, of all passes.
+  std::uint64_t samplesTaken() const { return samplesTaken_; }
+  std::uint64_t pixelsSampled() const { return pixelsSampled_; }
 
  private:
   bool exactBackground() const;
@@ -73,6 +85,7 @@ class StochasticMean {
   int passes_;
   std::shared_ptr<const MaskTable> masks_;
   Image<glm::vec3> light_, unit_, added_, hidden_;
+  std::atomic<std::uint64_t> samplesTaken_ = 0, pixelsSampled_ = 0;
 };
 
 }  // namespace pellucid

@@ -31,8 +31,10 @@ struct ShadowRays::Impl {
   std::vector<PunctualLight> lights;
   std::vector<float> eta;  // by material
 
-  Impl(const Scene& sceneGiven, const Camera& cameraGiven)
-      : scene(sceneGiven), camera(cameraGiven), traced(scene, camera), sampler(scene, TexelFilter::bilinear) {
+  bool opaque;                      // ShadowRays::Casters::opaque
+
+  Impl(const Scene& sceneGiven, const Camera& cameraGiven, bool opaqueGiven)
+      : scene(sceneGiven), camera(cameraGiven), traced(scene, camera), sampler(scene, TexelFilter::bilinear), opaque(opaqueGiven) {
     for (const Light& light : scene.lights) lights.push_back(lightBlock(light, camera));
     for (const Material& material : scene.materials) eta.push_back(materialBlock(material).scattering.z);
   }
@@ -51,6 +53,7 @@ glm::vec3 ShadowRays::Impl::density(const Crossing& crossing, const glm::vec3& t
   const shading::Surface surface =
       sampler.surfaceAt(primitive.material, attributes, placed.thicknessScale, towardsLight, RimKind::hard, 0.0f);
   if (material.additive || !(surface.coverage > 0.0f)) return glm::vec3(0.0f);
+  if (opaque) return glm::vec3(surface.coverage >= 0.5f ? 1.0f : 0.0f);
   const glm::vec3 normal = shading::normalTowardsEye(attributes.normal, towardsLight, toLight);
   const float cosine = std::clamp(std::abs(glm::dot(normal, toLight)), shading::PLD_GRAZING, 1.0f);
   const glm::vec3 t = shading::transmissionAt(surface, cosine);
@@ -95,7 +98,8 @@ glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& poin
   return glm::vec3(passed);
 }
 
-ShadowRays::ShadowRays(const Scene& scene, const Camera& camera) : impl_(new Impl(scene, camera)) {}
+ShadowRays::ShadowRays(const Scene& scene, const Camera& camera, Casters casters)
+    : impl_(new Impl(scene, camera, casters == Casters::opaque)) {}
 ShadowRays::~ShadowRays() = default;
 
 glm::vec3 ShadowRays::visibility(std::size_t light, const glm::dvec3& point) const {

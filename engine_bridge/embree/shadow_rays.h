@@ -10,8 +10,11 @@ namespace pellucid {
 
 class ShadowRays {
  public:
+  // As transparent things cast; or as renderers cast that know no others: what covers half of where it is hides all.
+  enum class Casters { transparent, opaque };
+
   // The scene must outlive this. Throws ResourceError when memory runs out.
-  ShadowRays(const Scene& scene, const Camera& camera);
+  ShadowRays(const Scene& scene, const Camera& camera, Casters casters = Casters::transparent);
   ~ShadowRays();
 
   // product of (1 - rho) over the transparent surfaces between a point and a light, per channel, [0,1]; 1 where the

@@ -5,10 +5,13 @@
 #include <functional>
 #include <limits>
 
+#include "engine_bridge/scene/light_views.h"
 #include "engine_bridge/scene/triangle_source.h"
 
 namespace pellucid {
 namespace {
+
+constexpr double kDense = 16.0;  // particles over one another, of whose rims a map need not show each
 
 struct Ball {
   glm::dvec3 middle;  // world
@@ -128,6 +131,29 @@ std::shared_ptr<const DensityGrid> particleGrid(const Scene& scene, int longest)
   eachBall(scene, [&](const Ball& ball) { splat(ball, low, edge, weights, grid->density); });
   for (const float value : grid->density.texels) grid->most = std::max(grid->most, value);
   return grid;
+}
+
+int particleMapSize(const Scene& scene, int across, int most) {
+  for (const Instance& instance : scene.instances) {
+    const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
+    const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+    if (castsInto(Casters::transparent, material) && !primitive.points && !material.billboard) return most;
+  }
+  Bounds bounds;
+  double sum = 0.0, number = 0.0, discs = 0.0;
+  eachBall(scene, [&](const Ball& ball) {
+    bounds.add(ball.middle - ball.radius);
+    bounds.add(ball.middle + ball.radius);
+    sum += ball.radius;
+    number += 1.0;
+    discs += 3.141592653589793 * ball.radius * ball.radius;
+  });
+  if (!(sum > 0.0)) return most;
+  const glm::dvec3 extent = bounds.high - bounds.low;
+  const double area = std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
+  if (discs < kDense * area) return most;
+  const double texels = 0.5 * across * std::max({extent.x, extent.y, extent.z}) * number / sum;
+  return static_cast<int>(std::min(std::ceil(std::clamp(texels, 512.0, 1e6) / 128.0) * 128.0, static_cast<double>(most)));
 }
 
 Fog particleFog(std::shared_ptr<const DensityGrid> grid, const Camera& camera, std::vector<shading::PunctualLight> lights) {

@@ -90,6 +90,21 @@ TEST_F(Shadow, DimsTheLightsOwnLayer) {
     }
 }
 
+// Fig. 9's left: a pane that lets half of the light through hides all of it.
+TEST_F(Shadow, AsIfCastersWereOpaque) {
+  writeShot(true);
+  ASSERT_EQ(run({"--shadows", "exact:opaque"}).code, 0);
+  const OpaqueFile file = out();
+  const glm::vec4 dimmed = file.gbuffer.beauty.at(kColumn, kRow);
+  EXPECT_NEAR(dimmed.r, .6f - .5f, 1e-6);
+  EXPECT_NEAR(dimmed.b, .4f - .3f, 1e-6);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      if (beside(x, y)) {
+        ASSERT_EQ(file.gbuffer.beauty.at(x, y), glm::vec4(.6f, .5f, .4f, 1.0f)) << x << "," << y;
+      }
+}
+
 TEST_F(Shadow, MapsDimItAlike) {
   writeShot(true);
   ASSERT_EQ(run({"--shadows", "exact"}).code, 0);
