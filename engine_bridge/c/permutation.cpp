@@ -64,7 +64,10 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
   if (p.has(PLD_FEATURE_DISPERSION)) sum(7, 10);
   if (p.fronts()) {
     sum(6, 8);
-    sum(7, 10);
+    if (p.grey())
+      planes.push_back({7, half ? GLenum{GL_R16F} : GLenum{GL_R32F}, bits / 4, 10, BlendKind::add, {0, 0, 0, 0}});
+    else
+      sum(7, 10);
   }
   return planes;
 }

@@ -7,6 +7,10 @@ layout(binding = 10) uniform sampler2D frontDepth;
 FrontTargets frontAt(ivec2 pixel) {
   FrontTargets targets;
   targets.radiance = texelFetch(frontRadiance, pixel, 0);
+#ifdef GREY
+  targets.depth = vec4(vec3(texelFetch(frontDepth, pixel, 0).r), 0.0f);
+#else
   targets.depth = texelFetch(frontDepth, pixel, 0);
+#endif
   return targets;
 }

@@ -20,12 +20,17 @@ void writeTargets(LeanTargets targets) {
 #endif
 }
 
-void writeSums(Layer layer, WeightSettings settings) {
+//   z  nearest of what the sums hold, which these planes do not keep
+void writeOitSums(OitSums sums, float z) {
 #ifdef GREY
-  writeTargets(packLean(layerSums(layer, settings, NORMALISATION), true));
+  writeTargets(packLean(sums, true));
 #else
-  writeTargets(packLean(layerSums(layer, settings, NORMALISATION), false));
+  writeTargets(packLean(sums, false));
 #endif
+}
+
+void writeSums(Layer layer, WeightSettings settings) {
+  writeOitSums(layerSums(layer, settings, NORMALISATION), layer.z);
 }
 
 // A fragment that goes elsewhere.

@@ -108,10 +108,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   writePublished(layer, scatter, seamWeight());
 #else
 #ifdef FRONT_TAIL
-  if (isFront(z, texelFetch(pldFrontZ, pixel, 0).r))
-    writeFront(layer);
-  else
-    writeTail(layer, seamWeight());
+  writeFrontOrTail(layer, seamWeight(), isFront(z, texelFetch(pldFrontZ, pixel, 0).r));
 #else
   writeSums(layer, seamWeight());
 #endif
@@ -147,10 +144,11 @@ RefractionSettings seamRefraction() {
   return settings;
 }
 
-vec2 seamOffset(PldSurface surface, float eta) {
+//   backdropZ  seamBackdropZ(), fetched once for all that ask
+vec2 seamOffset(PldSurface surface, float eta, float backdropZ) {
   vec3 position = surface.position * pldWeight.w;
   vec3 toEye = pldPicture.z != 0.0f ? vec3(0.0f, 0.0f, 1.0f) : normalize(-position);
-  return refractionOffset(seamRefraction(), position, toEye, surface.normal, eta, seamBackdropZ(),
+  return refractionOffset(seamRefraction(), position, toEye, surface.normal, eta, backdropZ,
                           surface.thickness * pldWeight.w);
 }
 #endif
@@ -161,15 +159,16 @@ void pldWriteFragment(PldSurface surface) {
   vec4 dispersion = vec4(0.0f);
   float z = -surface.position.z * pldWeight.w;
 #ifdef SCATTER
+  float backdropZ = seamBackdropZ();
 #ifdef REFRACTS
   // Entering faces only: along the ray that has not been bent, back faces would reflect all.
   if (gl_FrontFacing && surface.eta != 1.0f && pldRefraction.x != 0.0f) {
-    vec2 green = seamOffset(surface, surface.eta);
+    vec2 green = seamOffset(surface, surface.eta, backdropZ);
     offset = recordedOffset(green);
 #ifdef DISPERSION
     if (surface.etaRedBlue != vec2(surface.eta))
-      dispersion = vec4(seamOffset(surface, surface.etaRedBlue.x) - green,
-                        seamOffset(surface, surface.etaRedBlue.y) - green);
+      dispersion = vec4(seamOffset(surface, surface.etaRedBlue.x, backdropZ) - green,
+                        seamOffset(surface, surface.etaRedBlue.y, backdropZ) - green);
 #endif
   }
 #endif
@@ -180,9 +179,8 @@ void pldWriteFragment(PldSurface surface) {
   settings.netCoverage = 0;
   settings.focalPixels = pldRefraction.z;
   settings.orthographic = pldPicture.z != 0.0f ? 1 : 0;
-  if (z > 0.0f)
-    variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), clamp(surface.transmission, vec3(0.0f), vec3(1.0f)),
-                             clamp(surface.collimation, 0.0f, 1.0f), z, seamBackdropZ());
+  variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), clamp(surface.transmission, vec3(0.0f), vec3(1.0f)),
+                           clamp(surface.collimation, 0.0f, 1.0f), z, backdropZ);
 #endif
 #endif
   pldWriteLayer(surface.radiance * pldPicture.x, surface.coverage, surface.transmission, z, offset, variance, dispersion);

@@ -17,11 +17,11 @@ struct FrontTargets {
   vec4 depth;     // tau.rgb, unused
 };
 
-PLD_FN FrontTargets packFront(Layer layer) {
+//   depth  its optical depth, as in the sums
+PLD_FN FrontTargets packFront(Layer layer, vec3 depth) {
   FrontTargets targets;
   targets.radiance = vec4(layer.radiance, 1.0f);
-  targets.depth = vec4(opticalDepth3(opacityOf(layer.coverage, layer.transmission),
-                                     passedBy(layer.coverage, layer.transmission)), 0.0f);
+  targets.depth = vec4(depth, 0.0f);
   return targets;
 }
 
@@ -35,7 +35,7 @@ PLD_FN float mergedFront(float radiance, float netOpacity, float depth, float la
 PLD_FN Resolved frontOverTail(FrontTargets front, Resolved tail) {
   vec3 depth = vec3(front.depth);
   vec3 beta = transmittanceOf(depth);
-  vec3 net = netOpacityOf(depth);
+  vec3 net = netOpacityOf(depth, beta);
   vec3 light;
   light.r = mergedFront(front.radiance.r, net.r, depth.r, front.radiance.a);
   light.g = mergedFront(front.radiance.g, net.g, depth.g, front.radiance.a);

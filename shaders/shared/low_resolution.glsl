@@ -39,7 +39,7 @@ PLD_FN LowTexel lowTexelOf(OitSums sums, vec4 solid, float nearestZ, WeightSetti
   precise float hiddenSum = hidden;
   LowTexel texel;
   texel.radiance = resolved.transparent;
-  texel.opacity = netOpacityOf(sums.depth);
+  texel.opacity = netOpacityOf(sums.depth, transmittanceOf(sums.depth));
   texel.nearestZ = nearestZ;
   if (solid.a < 3e38f) {
     texel.radiance = overBackground(resolved, vec3(solid));

@@ -29,7 +29,7 @@ PLD_FN float meanColour(float numerator, float denominator) {
 
 PLD_FN Resolved resolveSums(OitSums sums, bool modulateSelf) {
   vec3 beta = transmittanceOf(sums.depth);
-  vec3 net = netOpacityOf(sums.depth);
+  vec3 net = netOpacityOf(sums.depth, beta);
   vec3 mean;
   mean.r = meanColour(sums.numerator.r, sums.denominator.r);
   mean.g = meanColour(sums.numerator.g, sums.denominator.g);

@@ -29,15 +29,14 @@ PLD_FN vec3 passedBy(float coverage, vec3 transmission) {
 // -ln(1 - o), capped, accurate at both ends.
 //   opacity, passed  o and 1 - o, each with its own relative precision, [0,1]
 PLD_FN float opticalDepth(float opacity, float passed) {
-  if (opacity < 0.29f) {
-    precise float s = opacity / (2.0f - opacity);
-    precise float q = s * s;
-    precise float thin = s * (2.0f + q * (0.666666667f + q * (0.4f + q * (0.285714286f + q * 0.222222222f))));
-    return thin;
-  }
-  if (passed <= 0.0f) return PLD_OPAQUE_DEPTH;
-  precise float thick = min(-pldLog(passed), PLD_OPAQUE_DEPTH);
-  return max(thick, 0.0f);
+  // Thin layers by the series of their opacity, others by that of what passes: one series, one division.
+  bool thin = opacity < 0.29f;
+  BinaryParts parts = binaryParts(passed);
+  precise float over = thin ? opacity : 1.0f - parts.mantissa;
+  precise float under = thin ? 2.0f - opacity : 1.0f + parts.mantissa;
+  precise float s = over / under;
+  float depth = logOfParts(thin ? 0.0f : -parts.exponent, s);
+  return passed <= 0.0f ? PLD_OPAQUE_DEPTH : clamp(depth, 0.0f, PLD_OPAQUE_DEPTH);
 }
 
 PLD_FN vec3 opticalDepth3(vec3 opacity, vec3 passed) {
@@ -58,10 +57,11 @@ PLD_FN vec3 transmittanceOf(vec3 depth) {
 }
 
 // 1 - beta, without the cancellation.
-PLD_FN vec3 netOpacityOf(vec3 depth) {
+//   beta  transmittanceOf(depth)
+PLD_FN vec3 netOpacityOf(vec3 depth, vec3 beta) {
   vec3 net;
-  net.r = pldOneMinusExp(depth.r);
-  net.g = pldOneMinusExp(depth.g);
-  net.b = pldOneMinusExp(depth.b);
+  net.r = pldOneMinusPower(depth.r, beta.r);
+  net.g = pldOneMinusPower(depth.g, beta.g);
+  net.b = pldOneMinusPower(depth.b, beta.b);
   return net;
 }

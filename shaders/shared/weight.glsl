@@ -14,9 +14,8 @@ const int PLD_WEIGHT_EQ10Z = 8;
 const int PLD_WEIGHT_POWER = 9;
 const int PLD_WEIGHT_UNIFORM = 10;
 
-// Twelve decades either way: what float sums bear without overflow at radiance 1e6 and 100,000 layers.
-const float PLD_WEIGHT_MIN = 1e-12f;
-const float PLD_WEIGHT_MAX = 1e12f;
+// Twelve decades either way, as a power of 2: what float sums bear without overflow at radiance 1e6 and 100,000 layers.
+const float PLD_WEIGHT_OCTAVES = 39.86f;
 
 struct WeightSettings {
   int kind;         // PLD_WEIGHT_*
@@ -73,8 +72,8 @@ PLD_FN float weightEq10(float d) {
 }
 
 PLD_FN float weightPower(float z, float exponent) {
-  precise float w = pldExp(-exponent * pldLog(z));
-  return clamp(w, PLD_WEIGHT_MIN, PLD_WEIGHT_MAX);
+  precise float octaves = -exponent * pldLog2(z);
+  return pldExp2(clamp(octaves, -PLD_WEIGHT_OCTAVES, PLD_WEIGHT_OCTAVES));
 }
 
 // Weight by depth alone: monotone, falling. What additive light is compared by. z > 0 metres.

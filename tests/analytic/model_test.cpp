@@ -126,7 +126,8 @@ TEST(Scattering, BetaAgainstTheProductInDouble) {
 TEST(Scattering, OneMinusBetaOfOneThinLayer) {
   for (const double opacity : {1e-7, 3e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, .1, .3, .9, 1. - 1e-7}) {
     const float o = static_cast<float>(opacity);
-    const double found = static_cast<double>(shading::netOpacityOf(shading::opticalDepth3(glm::vec3(o), glm::vec3(1.0f - o))).r);
+    const glm::vec3 depth = shading::opticalDepth3(glm::vec3(o), glm::vec3(1.0f - o));
+    const double found = static_cast<double>(shading::netOpacityOf(depth, shading::transmittanceOf(depth)).r);
     EXPECT_NEAR(found / static_cast<double>(o), 1.0, 1e-5) << opacity;
   }
 }
