@@ -40,42 +40,44 @@ void mergeCoincident(double& light, double& opacity, double otherLight, double o
 }
 
 // A total order on all bits of the record, so that sums of coincident layers do not depend on list order either.
+template <class Record>
 struct Place {
   float z;  // of the fragment, which sorting reads most
-  const Fragment* fragment;
+  const Record* fragment;
 };
-bool before(const Place& a, const Place& b) {
+template <class Record>
+bool before(const Place<Record>& a, const Place<Record>& b) {
   if (a.z != b.z) return a.z < b.z;
-  return std::memcmp(a.fragment, b.fragment, sizeof(Fragment)) < 0;
+  return std::memcmp(a.fragment, b.fragment, sizeof(Record)) < 0;
 }
 
 // By insertion, which is the quickest for as few as most pixels have.
-void sortPlaces(std::vector<Place>& places) {
+template <class Record>
+void sortPlaces(std::vector<Place<Record>>& places) {
   constexpr std::size_t kFew = 32;
   if (places.size() > kFew) {
-    std::sort(places.begin(), places.end(), before);
+    std::sort(places.begin(), places.end(), before<Record>);
     return;
   }
   for (std::size_t i = 1; i < places.size(); ++i) {
-    const Place moved = places[i];
+    const Place<Record> moved = places[i];
     std::size_t k = i;
     for (; k > 0 && before(moved, places[k - 1]); --k) places[k] = places[k - 1];
     places[k] = moved;
   }
 }
 
-Layer layerOf(const Fragment& fragment) {
+template <class Record>
+Layer layerOf(const Record& fragment) {
   const dvec3 opacity = static_cast<double>(fragment.coverage) * (dvec3(1.0) - dvec3(fragment.transmission));
   return {dvec3(fragment.radiance), opacity};
 }
 
-}  // namespace
-
-void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
-                     const std::vector<std::uint8_t>* only) {
+template <class Record>
+void composite(const ListsOf<Record>& lists, const Window& data, Veil& veil, const std::vector<std::uint8_t>* only) {
   const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
-    std::vector<Place> sorted;
+    std::vector<Place<Record>> sorted;
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < lists.window.width(); ++x) {
         const auto pixel =
@@ -85,7 +87,7 @@ void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
         const bool hasSolid = std::isfinite(solid.a);
         sorted.clear();
         for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
-          const Fragment& fragment = lists.fragments[i];
+          const Record& fragment = lists.fragments[i];
           if (fragment.z <= solid.a && !shading::isSolid(fragment.coverage, fragment.transmission))
             sorted.push_back({fragment.z, &fragment});
         }
@@ -113,6 +115,17 @@ void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
         veil.touched.at(left + x, top + y) = 1;
       }
   });
+}
+
+}  // namespace
+
+void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
+                     const std::vector<std::uint8_t>* only) {
+  composite(lists, data, veil, only);
+}
+
+void compositeSorted(const LeanLists& lists, const Window& data, Veil& veil) {
+  composite(lists, data, veil, nullptr);
 }
 
 }  // namespace pellucid

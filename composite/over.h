@@ -10,5 +10,6 @@ namespace pellucid {
 //   only  one entry a pixel of the lists' window, 0 leaves the pixel as it is; null: all of them
 void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
                      const std::vector<std::uint8_t>* only = nullptr);
+void compositeSorted(const LeanLists& lists, const Window& data, Veil& veil);
 
 }  // namespace pellucid

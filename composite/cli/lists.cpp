@@ -1,5 +1,6 @@
 #include "composite/cli/lists.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "composite/fog.h"
@@ -34,8 +35,10 @@ void eachList(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& d
     else
       mergeDeep(lists, deep, gbuffer, rule, most, veiled);
   };
+  PassSettings listed = settings;
+  if (!deep.empty()) listed.tile = std::max(gbuffer.data.width(), gbuffer.data.height());  // files are read by rows
   if (pass)
-    pass->fragments(settings, merge);
+    pass->fragments(listed, merge);
   else
     merge(emptyLists(gbuffer.data));
 }

@@ -48,6 +48,10 @@ class ListPainter {
       lookedUp_ = Image<glm::vec3>(gbuffer_.data.width(), gbuffer_.data.height(), glm::vec3(0.0f));
     }
     const bool split = settings_.sortedTruth || settings_.tolerance;
+    if (readsDepthAlone()) {
+      pass_->leanFragments(sample_, [&](const LeanLists& lists) { compositeSorted(lists, gbuffer_.data, veil); });
+      return veil;
+    }
     PassSettings listed = sample_;
     if (sums_) listed.fog = nullptr;  // it enters sums as the GL pass has it do
     eachList(pass_, deep_, gbuffer_, listed, split ? VolumeRule::split : VolumeRule::midDepth,
@@ -90,6 +94,11 @@ class ListPainter {
     FragmentLists shown = given;
     hideSolids(shown, planes_);
     composite(shown, veil);
+  }
+
+  bool readsDepthAlone() const {
+    return settings_.sortedTruth && !settings_.tolerance && !stochastic_ && !scatters_ && !settings_.deepOpaque && pass_ &&
+           deep_.empty() && !sample_.fog;
   }
 
   void composite(const FragmentLists& lists, Veil& veil) {

@@ -20,6 +20,12 @@ std::size_t countIn(const Image<float>& count, int x0, int x1, int y) {
   return sum;
 }
 
+std::size_t countIn(const Image<float>& count, const Window& window) {
+  std::size_t sum = 0;
+  for (int y = window.y0; y < window.y1; ++y) sum += countIn(count, window.x0, window.x1, y);
+  return sum;
+}
+
 // Bytes that one storage block may have.
 std::size_t largestBlock() {
   GLint64 bytes = 0;
@@ -27,9 +33,22 @@ std::size_t largestBlock() {
   return static_cast<std::size_t>(std::max<GLint64>(bytes, 0));
 }
 
+constexpr int kTile = 64;  // edge of what software rasterisers give to one thread
+
+// Fragments of a block. Few, so that they are still in the cache when they are read; but so many that drawing the
+// geometry once more for each block is a small part of the work. 0: blocks do not pay.
+std::size_t blockSize(const Renderer& renderer, std::size_t recordBytes) {
+  const GeometryStream& geometry = renderer.geometry();
+  if (!renderer.picksTiles() || !geometry.resident()) return 0;
+  const std::size_t cached = (std::size_t{9} << 19) / recordBytes;
+  constexpr std::size_t kPerTriangle = 128, kPerDraw = 4096;  // a draw costs some microseconds, a fragment 40 ns
+  return std::max(cached, geometry.triangles() * kPerTriangle + geometry.draws() * kPerDraw);
+}
+
+template <class Record>
 class BandWriter {
  public:
-  void write(Renderer& renderer, const Image<float>& count, const Window& band, FragmentLists& lists);
+  void write(Renderer& renderer, const Image<float>& count, const Window& band, ListsOf<Record>& lists);
 
  private:
   // A buffer that only grows: fresh memory for every band costs more than the lists themselves.
@@ -49,7 +68,9 @@ class BandWriter {
   std::vector<std::uint32_t> places_;
 };
 
-void BandWriter::write(Renderer& renderer, const Image<float>& count, const Window& band, FragmentLists& lists) {
+template <class Record>
+void BandWriter<Record>::write(Renderer& renderer, const Image<float>& count, const Window& band,
+                               ListsOf<Record>& lists) {
   lists.offsets.assign(1, 0);
   places_.clear();
   for (int y = band.y0; y < band.y1; ++y)
@@ -60,17 +81,18 @@ void BandWriter::write(Renderer& renderer, const Image<float>& count, const Wind
   lists.fragments.resize(lists.offsets.back());
   if (lists.fragments.empty()) return;
 
-  const auto bytes = static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Fragment));
+  const auto bytes = static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Record));
   const auto cursorBytes = static_cast<GLsizeiptr>(places_.size() * sizeof(std::uint32_t));
   fragments_.atLeast(bytes, 3, "making room for fragment lists");
   cursors_.atLeast(cursorBytes, 4, "making room for the cursors of fragment lists");
   glNamedBufferSubData(cursors_.buffer.name(), 0, cursorBytes, places_.data());
-  lists.dispersion.resize(renderer.disperses() ? lists.fragments.size() : 0);
+  constexpr bool kLean = std::is_same_v<Record, LeanFragment>;
+  lists.dispersion.resize(!kLean && renderer.disperses() ? lists.fragments.size() : 0);
   const auto dispersionBytes = static_cast<GLsizeiptr>(lists.dispersion.size() * sizeof(glm::vec4));
   if (lists.disperses()) dispersion_.atLeast(dispersionBytes, 7, "making room for dispersion");
   renderer.setBand(band);
   renderer.targets().beginNothing();
-  renderer.draw(Output::list, {band});
+  renderer.draw(kLean ? Output::leanList : Output::list, {band});
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(fragments_.buffer.name(), 0, bytes, lists.fragments.data());
   glGetNamedBufferSubData(cursors_.buffer.name(), 0, cursorBytes, places_.data());
@@ -115,8 +137,31 @@ std::vector<Window> bandsOf(const Image<float>& count, const Window& area, std::
   return bands;
 }
 
-void listFragments(Renderer& renderer, std::size_t fragmentBytes,
-                   const std::function<void(FragmentLists&, const Window&)>& band) {
+std::vector<Window> blocksOf(const Image<float>& count, const Window& window, int edge, std::size_t most) {
+  std::vector<Window> blocks;
+  const auto nextTile = [edge](int place, int end) { return std::min((place / edge + 1) * edge, end); };
+  for (int y0 = window.y0, y1; y0 < window.y1; y0 = y1) {
+    y1 = nextTile(y0, window.y1);
+    int left = window.x0;
+    std::size_t held = 0;
+    for (int x0 = window.x0, x1; x0 < window.x1; x0 = x1) {
+      x1 = nextTile(x0, window.x1);
+      const std::size_t tile = countIn(count, {x0, y0, x1, y1});
+      if (held + tile > most && x0 > left) {
+        blocks.push_back({left, y0, x0, y1});
+        left = x0;
+        held = 0;
+      }
+      held += tile;
+    }
+    blocks.push_back({left, y0, window.x1, y1});
+  }
+  return blocks;
+}
+
+template <class Record>
+void listFragments(Renderer& renderer, std::size_t bytes,
+                   const std::function<void(ListsOf<Record>&, const Window&)>& band) {
   Targets& targets = renderer.targets();
   const std::vector<Window> tiles = renderer.tiles();
   targets.beginCount();
@@ -125,21 +170,35 @@ void listFragments(Renderer& renderer, std::size_t fragmentBytes,
   Image<glm::vec4> solid(targets.width(), targets.height(), glm::vec4(0, 0, 0, INFINITY));
   if (renderer.hasSolids()) targets.readSolid(solid, 0, 0);
 
-  const std::size_t blockLimit = largestBlock() / sizeof(Fragment);
-  const std::size_t most = std::clamp<std::size_t>(fragmentBytes / sizeof(Fragment), 1, blockLimit);
-  BandWriter writer;
-  FragmentLists lists;
+  const std::size_t blockLimit = largestBlock() / sizeof(Record);
+  const std::size_t most = std::clamp<std::size_t>(bytes / sizeof(Record), 1, blockLimit);
+  const std::size_t few = blockSize(renderer, sizeof(Record));
+  std::vector<Window> windows;
   for (const Window& tile : tiles)
     for (const Window& window : bandsOf(count, tile, most)) {
-      if (window.width() == 1 && window.height() == 1 && countAt(count, window.x0, window.y0) > blockLimit)
-        throw ResourceError(fmt::format("GL: {} transparent fragments on one pixel: the device lists at most {}",
-                                        countAt(count, window.x0, window.y0), blockLimit));
-      writer.write(renderer, count, window, lists);
-      lists.solid = Image<glm::vec4>(window.width(), window.height());
-      for (int y = window.y0; y < window.y1; ++y)
-        std::copy(&solid.at(window.x0, y), &solid.at(window.x0, y) + window.width(), lists.solid.row(y - window.y0));
-      band(lists, window);
+      if (few == 0 || countIn(count, window) <= few) {
+        windows.push_back(window);
+        continue;
+      }
+      const std::vector<Window> blocks = blocksOf(count, window, kTile, few);
+      windows.insert(windows.end(), blocks.begin(), blocks.end());
     }
+
+  BandWriter<Record> writer;
+  ListsOf<Record> lists;
+  for (const Window& window : windows) {
+    if (window.width() == 1 && window.height() == 1 && countAt(count, window.x0, window.y0) > blockLimit)
+      throw ResourceError(fmt::format("GL: {} transparent fragments on one pixel: the device lists at most {}",
+                                      countAt(count, window.x0, window.y0), blockLimit));
+    writer.write(renderer, count, window, lists);
+    lists.solid = Image<glm::vec4>(window.width(), window.height());
+    for (int y = window.y0; y < window.y1; ++y)
+      std::copy(&solid.at(window.x0, y), &solid.at(window.x0, y) + window.width(), lists.solid.row(y - window.y0));
+    band(lists, window);
+  }
 }
+
+template void listFragments<Fragment>(Renderer&, std::size_t, const std::function<void(FragmentLists&, const Window&)>&);
+template void listFragments<LeanFragment>(Renderer&, std::size_t, const std::function<void(LeanLists&, const Window&)>&);
 
 }  // namespace pellucid::gl

@@ -184,7 +184,7 @@ void GeometryStream::sweep(SubmissionOrder order, std::size_t budgetBytes,
   residentOrder_ = order;
   residentBudget_ = budgetBytes;
   resident_ = false;
-  chunks_ = triangles_ = 0;
+  chunks_ = triangles_ = draws_ = 0;
   // One share is the copy being cut; the rest lie in slots.
   const std::size_t chunkBytes = std::min(budgetBytes / (kFewestSlots + 1), kMostChunkBytes);
   const std::size_t slots = std::max(kFewestSlots, budgetBytes / std::max<std::size_t>(chunkBytes, 1) - 1);
@@ -199,6 +199,7 @@ void GeometryStream::sweep(SubmissionOrder order, std::size_t budgetBytes,
     upload(staging_, slots_[index]);
     present(slots_[index], draw);
     ++chunks_;
+    draws_ += staging_.draws.size();
     for (const ChunkDraw& one : staging_.draws) triangles_ += one.triangles;
   }
   resident_ = chunks_ <= slots;

@@ -68,6 +68,8 @@ class GeometryStream {
              const std::function<void(const std::vector<ChunkDraw>&)>& draw);
   std::size_t chunks() const { return chunks_; }        // of the last sweep
   std::size_t triangles() const { return triangles_; }  // of the last sweep
+  std::size_t draws() const { return draws_; }          // of the last sweep
+  bool resident() const { return resident_; }           // the next sweep like the last uploads nothing
 
  private:
   struct Slot {
@@ -86,7 +88,7 @@ class GeometryStream {
   SubmissionOrder residentOrder_;
   std::size_t residentBudget_ = 0;
   bool resident_ = false;  // every chunk lies in a slot
-  std::size_t chunks_ = 0, triangles_ = 0;
+  std::size_t chunks_ = 0, triangles_ = 0, draws_ = 0;
   ChunkData staging_;
 };
 

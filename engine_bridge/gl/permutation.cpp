@@ -66,6 +66,9 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
     case Output::list:
       defines = {"OUTPUT_LIST"};
       break;
+    case Output::leanList:
+      defines = {"OUTPUT_LIST", "LEAN"};
+      break;
     case Output::cover:
     case Output::coverToWin:
       defines = {"OUTPUT_COVER"};
@@ -90,9 +93,11 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   }
   defines.emplace_back("EXACT_COVERAGE");
   if (frame.solids) defines.emplace_back("SOLIDS");
-  if (frame.probes && (output == Output::count || output == Output::list)) defines.emplace_back("PROBES");
-  if (frame.scatters() && output != Output::count && output != Output::rims) defines.emplace_back("SCATTER");
-  if (frame.disperses && output != Output::count && output != Output::rims) defines.emplace_back("DISPERSION");
+  const bool lists = output == Output::list || output == Output::leanList;
+  if (frame.probes && (output == Output::count || lists)) defines.emplace_back("PROBES");
+  if (output == Output::count || output == Output::leanList || output == Output::rims) return defines;
+  if (frame.scatters()) defines.emplace_back("SCATTER");
+  if (frame.disperses) defines.emplace_back("DISPERSION");
   return defines;
 }
 

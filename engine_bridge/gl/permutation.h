@@ -11,6 +11,7 @@ enum class Output {
   sums,       // the OIT planes
   count,      // fragments per pixel
   list,       // the fragments themselves
+  leanList,   // what compositing by depth reads of them
   solid,      // the nearest fragment that hides everything
   published,  // the targets of PT17 table 2
   rims,       // what rims of leaves get from around: gbuffer/rim_planes.h
@@ -21,7 +22,7 @@ enum class Output {
   claim,       // who owns a sample, of those at one depth
   addWon,
 };
-constexpr std::size_t kOutputs = 11;
+constexpr std::size_t kOutputs = 12;
 
 struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;

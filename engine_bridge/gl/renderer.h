@@ -56,6 +56,7 @@ class Renderer {
   FogFrame fogFrame(const Window& superTile) const;
   // Scissor tiles of the super-tile, as PassSettings::tile wants them.
   std::vector<Window> tiles() const;
+  bool picksTiles() const { return settings_.tile == 0; }
   const GeometryStream& geometry() const { return stream_; }
   // Of shadow rays, since the last call.
   ShadowRayTable::Counts takeShadowRayCounts() { return std::exchange(rayCounts_, {}); }

@@ -1,29 +1,49 @@
 #pragma once
-// Appends a fragment to its pixel's list: every pixel of the band owns a range that a first pass has counted.
+// Appends a fragment to its pixel's list: every pixel of the band owns a range that a first pass has counted. Records are
+// those of gbuffer/fragments.h, as pairs of words: LeanFragment where LEAN, else Fragment.
 #include "gl/frame.glsl"
-#include "gl/fragment_record.glsl"
 #include "gl/identity.glsl"
 #include "shared/refraction.glsl"
 
-layout(std430, binding = 3) writeonly buffer Fragments { FragmentRecord fragments[]; };
+#ifdef LEAN
+const uint kPairs = 4u;
+#else
+const uint kPairs = 6u;
+#endif
+// Software devices store 64 bits as quickly as 32.
+#ifdef GL_ARB_gpu_shader_int64
+layout(std430, binding = 3) writeonly buffer Fragments { uint64_t pairs[]; };
+void storePair(uint place, uvec2 words) {
+  pairs[place] = packUint2x32(words);
+}
+#else
+layout(std430, binding = 3) writeonly buffer Fragments { uvec2 pairs[]; };
+void storePair(uint place, uvec2 words) {
+  pairs[place] = words;
+}
+#endif
+void storePair(uint place, vec2 words) {
+  storePair(place, floatBitsToUint(words));
+}
+
 #ifdef DISPERSION
 layout(std430, binding = 7) writeonly buffer Dispersions { vec4 dispersions[]; };  // one per fragment
 #endif
 layout(std430, binding = 4) buffer Cursors { uint cursors[]; };  // per pixel of the band: where its next fragment goes
 
 void appendFragment(Layer layer, Scatter scatter, vec4 dispersion, ivec2 pixel) {
-  FragmentRecord record;
-  record.radiance = layer.radiance;
-  record.coverage = layer.coverage;
-  record.transmission = layer.transmission;
-  record.z = layer.z;
-  record.offset = scatter.offset;
-  record.variance = scatter.variance;
-  record.identity = identityOf(instanceIdentity, triangleNumber);
   ivec2 inBand = pixel - band.xy;
   uint place = atomicAdd(cursors[inBand.y * band.z + inBand.x], 1u);
-  if (place >= uint(fragments.length())) return;
-  fragments[place] = record;
+  uint first = place * kPairs;
+  if (first + kPairs > uint(pairs.length())) return;
+  storePair(first, layer.radiance.rg);
+  storePair(first + 1u, vec2(layer.radiance.b, layer.coverage));
+  storePair(first + 2u, layer.transmission.rg);
+  storePair(first + 3u, vec2(layer.transmission.b, layer.z));
+#ifndef LEAN
+  storePair(first + 4u, scatter.offset);
+  storePair(first + 5u, uvec2(floatBitsToUint(scatter.variance), identityOf(instanceIdentity, triangleNumber)));
+#endif
 #ifdef DISPERSION
   dispersions[place] = dispersion;
 #endif

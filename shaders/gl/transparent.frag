@@ -1,6 +1,9 @@
 // One transparent fragment: fetch, shade through the shared model, write. Defines choose the output (OUTPUT_SUMS,
 // OUTPUT_PUBLISHED, OUTPUT_RIMS, OUTPUT_COUNT, OUTPUT_LIST, OUTPUT_SOLID; of stochastic transparency OUTPUT_COVER,
 // OUTPUT_CLAIM, OUTPUT_ADD), what the material has and what the frame needs.
+#ifdef OUTPUT_LIST
+#extension GL_ARB_gpu_shader_int64 : enable
+#endif
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/lights.glsl"

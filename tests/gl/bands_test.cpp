@@ -55,5 +55,14 @@ TEST(Bands, CoverEveryPixelOnceWithinTheLimit) {
   }
 }
 
+TEST(Bands, BlocksAreTilesThatShareALimit) {
+  const Image<float> count(10, 6, 1.0f);
+  const std::vector<Window> blocks = gl::blocksOf(count, {1, 0, 10, 6}, 4, 28);
+  // Two tiles share a block while both fit: 12 + 16, then 8; below, half of that fits in one.
+  const std::vector<Window> expected = {{1, 0, 8, 4}, {8, 0, 10, 4}, {1, 4, 10, 6}};
+  EXPECT_EQ(blocks, expected);
+  EXPECT_EQ(gl::blocksOf(count, {1, 0, 10, 6}, 4, 1).size(), 6u);  // a tile is the least
+}
+
 }  // namespace
 }  // namespace pellucid::test
