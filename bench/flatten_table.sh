@@ -1,7 +1,7 @@
 #!/bin/bash
 # Flattening unsorted deep EXRs, 1920x1080, half R G B A and float Z: time, CPU and peak memory of ours and of oiiotool, for
 # 4, 16 and 64 samples a pixel in one file, and in two of half as many (what --deepmerge takes, which sorts; --flatten alone
-# does not). Whole processes, half out, uncompressed; the least of RUNS runs each (3), taken in turn.
+# does not). Whole processes, half out, ZIP; the least of RUNS runs each (3), taken in turn.
 #   flatten_table.sh [WORKDIR]     best on a RAM disk; SAMPLES="4 16" leaves some out
 set -eu
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -24,9 +24,9 @@ for n in ${SAMPLES:-4 16 64}; do
   rm -f "$work"/{one,two,flatten,merge}
   for ((run = 0; run < ${RUNS:-3}; ++run)); do
     measure one "$pellucid" flatten "$work/deep.exr" --type half -o "$work/ours.exr"
-    measure flatten oiiotool "$work/deep.exr" --flatten -d half --compression none -o "$work/theirs.exr"
+    measure flatten oiiotool "$work/deep.exr" --flatten -d half --compression zip -o "$work/theirs.exr"
     measure two "$pellucid" flatten "$work/a.exr" "$work/b.exr" --type half -o "$work/ours.exr"
-    measure merge oiiotool "$work/a.exr" "$work/b.exr" --deepmerge --flatten -d half --compression none -o "$work/theirs.exr"
+    measure merge oiiotool "$work/a.exr" "$work/b.exr" --deepmerge --flatten -d half --compression zip -o "$work/theirs.exr"
   done
   for row in "one:pellucid flatten" "flatten:oiiotool --flatten (unsorted)" "two:pellucid flatten, two files" \
     "merge:oiiotool --deepmerge --flatten"; do

@@ -12,7 +12,7 @@ namespace {
 
 struct FlattenFlags {
   std::vector<std::string> files;
-  std::string output, budget = "64M", type = "float";
+  std::string output, budget = "16M", type = "float";
   RunFlags run;
 };
 
