@@ -2,6 +2,7 @@
 #pragma once
 #include <embree3/rtcore.h>
 
+#include <glm/glm.hpp>
 #include <utility>
 
 #include "gbuffer/errors.h"
@@ -43,5 +44,8 @@ class SceneHandle {
  private:
   RTCScene scene_ = nullptr;
 };
+
+// Whether anything of the scene lies within `reach` (in lengths of `direction`) of the origin.
+bool occluded(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float reach);
 
 }  // namespace pellucid::rays

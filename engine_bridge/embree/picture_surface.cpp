@@ -63,19 +63,7 @@ double PictureSurface::lift(const glm::dvec3& point) const {
 }
 
 bool PictureSurface::blocked(glm::vec3 origin, glm::vec3 direction, float reach) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay ray{};
-  ray.org_x = origin.x;
-  ray.org_y = origin.y;
-  ray.org_z = origin.z;
-  ray.dir_x = direction.x;
-  ray.dir_y = direction.y;
-  ray.dir_z = direction.z;
-  ray.tfar = reach;
-  ray.mask = 0xffffffffu;
-  rtcOccluded1(scene_, &context, &ray);
-  return ray.tfar < 0.0f;
+  return occluded(scene_, origin, direction, reach);
 }
 
 }  // namespace pellucid::rays
