@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <span>
 #include <vector>
 
+#include "composite/depth_order.h"
 #include "shaders/shading.h"
 
 namespace pellucid {
@@ -51,21 +54,57 @@ bool before(const Place<Record>& a, const Place<Record>& b) {
   return std::memcmp(a.fragment, b.fragment, sizeof(Record)) < 0;
 }
 
-// By insertion, which is the quickest for as few as most pixels have.
-template <class Record>
-void sortPlaces(std::vector<Place<Record>>& places) {
-  constexpr std::size_t kFew = 32;
-  if (places.size() > kFew) {
-    std::sort(places.begin(), places.end(), before<Record>);
-    return;
-  }
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const Place<Record> moved = places[i];
-    std::size_t k = i;
-    for (; k > 0 && before(moved, places[k - 1]); --k) places[k] = places[k - 1];
-    places[k] = moved;
-  }
+std::span<const Fragment> fragmentsOf(const FragmentLists& lists, std::size_t pixel) {
+  const std::uint64_t begin = lists.offsets[pixel];
+  return {lists.fragments.data() + begin, static_cast<std::size_t>(lists.offsets[pixel + 1] - begin)};
 }
+
+std::span<const LeanFragment> fragmentsOf(const LeanLists& lists, std::size_t pixel) {
+  const LeanLists::Range range = lists.ranges[pixel];
+  return lists.fragments.subspan(range.begin, range.count);
+}
+
+// The fragments of a pixel that show, from near to far. Neighbours are mostly drawn in the same order, so the last
+// pixel's order is tried before any sorting.
+template <class Record>
+class Sorted {
+ public:
+  const std::vector<Place<Record>>& of(std::span<const Record> fragments, float solidZ) {
+    places_.clear();
+    if (order_.size() != fragments.size()) {
+      order_.resize(fragments.size());
+      std::iota(order_.begin(), order_.end(), 0u);
+    }
+    for (const std::uint32_t i : order_) {
+      const Record& fragment = fragments[i];
+      if (fragment.z <= solidZ && !shading::isSolid(fragment.coverage, fragment.transmission))
+        places_.push_back({fragment.z, &fragment});
+    }
+    if (std::is_sorted(places_.begin(), places_.end(), before<Record>)) return places_;
+    sort();
+    if (places_.size() == order_.size())
+      for (std::size_t i = 0; i < order_.size(); ++i)
+        order_[i] = static_cast<std::uint32_t>(places_[i].fragment - fragments.data());
+    return places_;
+  }
+
+ private:
+  void sort() {
+    const std::size_t count = places_.size();
+    float z[kMostRanked];
+    std::uint32_t order[kMostRanked];
+    for (std::size_t i = 0; i < std::min(count, kMostRanked); ++i) z[i] = places_[i].z;
+    if (count > kMostRanked || !orderByDepth(z, count, order)) {
+      std::sort(places_.begin(), places_.end(), before<Record>);
+      return;
+    }
+    unsorted_ = places_;
+    for (std::size_t i = 0; i < count; ++i) places_[i] = unsorted_[order[i]];
+  }
+
+  std::vector<Place<Record>> places_, unsorted_;
+  std::vector<std::uint32_t> order_;
+};
 
 template <class Record>
 Layer layerOf(const Record& fragment) {
@@ -73,26 +112,20 @@ Layer layerOf(const Record& fragment) {
   return {dvec3(fragment.radiance), opacity};
 }
 
-template <class Record>
-void composite(const ListsOf<Record>& lists, const Window& data, Veil& veil, const std::vector<std::uint8_t>* only) {
+template <class Record, class Lists>
+void composite(const Lists& lists, const Window& data, Veil& veil, const std::vector<std::uint8_t>* only) {
   const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
-    std::vector<Place<Record>> sorted;
+    Sorted<Record> sorter;
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < lists.window.width(); ++x) {
         const auto pixel =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
         if (only && !(*only)[pixel]) continue;
-        const glm::vec4 solid = lists.solid.at(x, y);
+        const glm::vec4 solid = lists.solid.empty() ? glm::vec4(0, 0, 0, INFINITY) : lists.solid.at(x, y);
         const bool hasSolid = std::isfinite(solid.a);
-        sorted.clear();
-        for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
-          const Record& fragment = lists.fragments[i];
-          if (fragment.z <= solid.a && !shading::isSolid(fragment.coverage, fragment.transmission))
-            sorted.push_back({fragment.z, &fragment});
-        }
+        const std::vector<Place<Record>>& sorted = sorter.of(fragmentsOf(lists, pixel), solid.a);
         if (sorted.empty() && !hasSolid) continue;
-        sortPlaces(sorted);
 
         dvec3 light = hasSolid ? dvec3(glm::vec3(solid)) : dvec3(0.0);
         dvec3 transmission = hasSolid ? dvec3(0.0) : dvec3(1.0);
@@ -121,11 +154,11 @@ void composite(const ListsOf<Record>& lists, const Window& data, Veil& veil, con
 
 void compositeSorted(const FragmentLists& lists, const Window& data, Veil& veil,
                      const std::vector<std::uint8_t>* only) {
-  composite(lists, data, veil, only);
+  composite<Fragment>(lists, data, veil, only);
 }
 
 void compositeSorted(const LeanLists& lists, const Window& data, Veil& veil) {
-  composite(lists, data, veil, nullptr);
+  composite<LeanFragment>(lists, data, veil, nullptr);
 }
 
 }  // namespace pellucid

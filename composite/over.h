@@ -2,6 +2,7 @@
 #pragma once
 #include "composite/veil.h"
 #include "gbuffer/fragments.h"
+#include "gbuffer/lean_lists.h"
 
 namespace pellucid {
 

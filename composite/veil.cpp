@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace pellucid {
 
@@ -18,10 +19,10 @@ void Veil::addScatter() {
   applied = Image<glm::vec4>(transmission.width(), transmission.height(), glm::vec4(0.0f));
 }
 
-void VeilMean::add(const Veil& sample) {
+void VeilMean::add(Veil sample) {
   ++count_;
   if (count_ == 1) {
-    sum_ = sample;
+    sum_ = std::move(sample);
     return;
   }
   if (sample.scatters()) sum_.addScatter();
@@ -38,9 +39,9 @@ void VeilMean::add(const Veil& sample) {
   }
 }
 
-Veil VeilMean::finish() const {
+Veil VeilMean::finish() {
   if (count_ == 0) throw std::logic_error("VeilMean: no sample was added");
-  Veil mean = sum_;
+  Veil mean = std::move(sum_);
   const float share = 1.0f / static_cast<float>(count_);
   if (count_ > 1)
     for (std::size_t i = 0; i < mean.touched.size(); ++i) {
@@ -52,6 +53,7 @@ Veil VeilMean::finish() const {
       mean.direct[i] *= share;
       mean.applied[i] *= share;
     }
+  count_ = 0;
   return mean;
 }
 

@@ -27,8 +27,8 @@ struct Veil {
 // The mean of equally weighted samples, added in the order they come: N jittered passes become one antialiased veil.
 class VeilMean {
  public:
-  void add(const Veil& sample);
-  Veil finish() const;  // at least one sample must have been added
+  void add(Veil sample);
+  Veil finish();  // at least one sample must have been added, and none is kept
 
  private:
   Veil sum_;

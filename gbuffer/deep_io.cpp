@@ -13,8 +13,10 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <iterator>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -116,9 +118,10 @@ struct DeepReader::Impl {
   Window display, data;
   DeepMemory memory;
   DeepRows tileRow;  // of tiled files, the row of tiles read last
-  // Of scanline files whose lines we decode ourselves: the lines read last, from row linesFrom on.
+  // Of scanline files whose lines we decode ourselves: the lines read last, from row linesFrom on, and done ones whose
+  // memory the next ones take.
   std::optional<DeepLineFormat> format;
-  std::vector<DeepLine> lines;
+  std::vector<DeepLine> lines, spare;
   int linesFrom = 0;
   Impl(const std::string& from, const std::vector<std::string>& channels) : path(from), names(channels), source(from) {}
 
@@ -128,7 +131,7 @@ struct DeepReader::Impl {
     if (samples > source.size() * kLargestExpansion)
       throw InputError(fmt::format("{}: damaged: rows {} to {} claim {} samples, more than {} bytes can hold", path,
                                    rows.window.y0, rows.window.y1 - 1, samples, source.size()));
-    rows.channels.assign(names.size(), {});
+    rows.channels.resize(names.size());
     for (std::vector<float>& channel : rows.channels) channel.resize(samples);
   }
   void pointInto(DeepRows& rows) {
@@ -151,28 +154,37 @@ struct DeepReader::Impl {
     line.counts.clear();
   }
 
-  // Makes `lines` begin at row y0 and hold rows up to y1, with their counts.
-  void readLines(int y0, int y1) {
-    const auto kept = static_cast<std::ptrdiff_t>(lines.size()) + linesFrom - y0;
-    if (y0 < linesFrom || kept <= 0)
-      lines.clear();
-    else
-      lines.erase(lines.begin(), lines.end() - kept);
-    linesFrom = y0;
-    while (lines.size() < static_cast<std::size_t>(y1 - y0)) {
-      const std::size_t guess = lines.empty() ? 0 : lines.back().chunk.size() * 5 / 4;
-      lines.emplace_back();
-      lines.back().chunk.resize(guess);
-      readLine(y0 + static_cast<int>(lines.size()) - 1, lines.back());
+  // Reads rows y0 <= y < y1, packed, behind `to`.
+  void readPacked(int y0, int y1, std::vector<DeepLine>& to) {
+    std::size_t guess = 0;
+    for (int y = y0; y < y1; ++y) {
+      DeepLine line;
+      if (!spare.empty()) {
+        line = std::move(spare.back());
+        spare.pop_back();
+      }
+      if (line.chunk.size() < guess) line.chunk.resize(guess);
+      readLine(y, line);
+      guess = line.chunk.size() * 5 / 4;
+      to.push_back(std::move(line));
     }
+  }
+
+  // Makes `lines` begin at row y0 and hold rows up to y1 at least, with their counts.
+  void readLines(int y0, int y1) {
+    const auto held = static_cast<std::ptrdiff_t>(lines.size());
+    const auto done = y0 < linesFrom ? held : std::min<std::ptrdiff_t>(y0 - linesFrom, held);
+    std::move(lines.begin(), lines.begin() + done, std::back_inserter(spare));
+    lines.erase(lines.begin(), lines.begin() + done);
+    linesFrom = y0;
+    readPacked(y0 + static_cast<int>(lines.size()), y1, lines);
     tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t i) {
       if (lines[i].counts.empty() && !lines[i].readCounts(*format)) damagedLine(y0 + static_cast<int>(i));
     });
   }
 
-  DeepRows rowsOfLines(int y0, int y1, std::uint64_t most) {
+  DeepRows rowsOfLines(int y0, int y1, std::uint64_t most, DeepRows rows) {
     readLines(y0, most == UINT64_MAX ? y1 : std::min(y1, y0 + kBandRows));
-    DeepRows rows;
     rows.offsets.assign(1, 0);
     std::vector<std::uint64_t> first{0};
     for (const DeepLine& line : lines) {
@@ -183,11 +195,19 @@ struct DeepReader::Impl {
     }
     rows.window = {data.x0, y0, data.x1, y0 + static_cast<int>(first.size()) - 1};
     makeRoom(rows);
-    tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t i) {
-      std::vector<float*> channels;
-      for (std::vector<float>& channel : rows.channels) channels.push_back(channel.data() + first[i]);
-      if (!lines[i].readSamples(*format, channels)) damagedLine(y0 + static_cast<int>(i));
-    });
+    // While these rows are unpacked, as many come from the file.
+    const int next = y0 + static_cast<int>(lines.size());
+    std::vector<DeepLine> ahead;
+    tbb::parallel_invoke(
+        [&] { readPacked(next, std::min(rows.window.y1 + rows.window.height(), y1), ahead); },
+        [&] {
+          tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t i) {
+            std::vector<float*> channels;
+            for (std::vector<float>& channel : rows.channels) channels.push_back(channel.data() + first[i]);
+            if (!lines[i].readSamples(*format, channels)) damagedLine(y0 + static_cast<int>(i));
+          });
+        });
+    std::move(ahead.begin(), ahead.end(), std::back_inserter(lines));
     return rows;
   }
 
@@ -263,12 +283,12 @@ const Window& DeepReader::display() const {
   return impl_->display;
 }
 
-DeepRows DeepReader::read(int y0, int y1, std::uint64_t most) {
+DeepRows DeepReader::read(int y0, int y1, std::uint64_t most, DeepRows reused) {
   Impl& in = *impl_;
   if (y0 < in.data.y0 || y1 > in.data.y1 || y0 >= y1) throw std::logic_error("DeepReader: rows outside the file");
   if (in.tiles) return reading(in.path, [&] { return in.rowsOfTiles(y0, y1, most); });
-  if (in.format) return reading(in.path, [&] { return in.rowsOfLines(y0, y1, most); });
-  DeepRows rows;
+  if (in.format) return reading(in.path, [&] { return in.rowsOfLines(y0, y1, most, std::move(reused)); });
+  DeepRows rows = std::move(reused);
   return reading(in.path, [&] {
     Window window{in.data.x0, y0, in.data.x1, most == UINT64_MAX ? y1 : std::min(y1, y0 + kBandRows)};
     const exr::DeepFrameBuffer frame = in.memory.frame(window, in.names);

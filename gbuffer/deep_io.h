@@ -30,7 +30,8 @@ class DeepReader {
   // Rows y0 <= y < y1 (display coordinates, inside the data window), or fewer of them, but one at least, so that at
   // most `most` samples are held (of tiled files a row of tiles besides). Throws InputError for damage, ResourceError
   // when memory runs out.
-  DeepRows read(int y0, int y1, std::uint64_t most = UINT64_MAX);
+  //   reused  rows that are done with, whose memory is taken
+  DeepRows read(int y0, int y1, std::uint64_t most = UINT64_MAX, DeepRows reused = {});
 
  private:
   struct Impl;

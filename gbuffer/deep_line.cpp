@@ -3,6 +3,7 @@
 #include <Imath/half.h>
 #include <libdeflate.h>
 
+#include <bit>
 #include <cstring>
 #include <memory>
 
@@ -23,6 +24,48 @@ struct Inflater {
   std::vector<char> packed, plain;
 };
 
+// Sums of the differences that EXR stores, each 128 too much, modulo 256: eight bytes at a time.
+void sumDifferences(char* bytes, std::uint64_t size) {
+  static_assert(std::endian::native == std::endian::little);
+  constexpr std::uint64_t kLow = 0x00ff00ff00ff00ff, kEach = 0x0001000100010001, kOddOnes = 0x8000800080008000;
+  std::uint64_t before = 0;  // sum of all bytes before, in every lane of 16 bits
+  std::uint64_t at = 0;
+  for (; at + 8 <= size; at += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + at, sizeof word);
+    const std::uint64_t odd = (word >> 8) & kLow;
+    const std::uint64_t pairs = ((word & kLow) + odd) * kEach;  // sums up to each pair's end, at most 8 * 255
+    const std::uint64_t ends = ((pairs & kLow) + before) & kLow;
+    const std::uint64_t begins = (ends + (kLow + kEach) - odd) & kLow;  // without the pair's second byte
+    before = (ends >> 48) * kEach;
+    word = (begins | ends << 8) ^ kOddOnes;  // 128 too much for each byte but the first: for the odd ones
+    std::memcpy(bytes + at, &word, sizeof word);
+  }
+  unsigned last = static_cast<unsigned>(before & 255u);
+  for (; at < size; ++at) {
+    last = (last + static_cast<unsigned char>(bytes[at])) & 255u;
+    bytes[at] = static_cast<char>(last ^ (at % 2 ? 128u : 0u));
+  }
+}
+
+// The first half are the even bytes, the second half the odd ones.
+void interleave(const char* from, std::uint64_t size, char* to) {
+  const char *even = from, *odd = from + (size + 1) / 2;
+  constexpr std::uint64_t kAtOnce = 16;
+  const std::uint64_t pairs = size / 2;
+  std::uint64_t i = 0;
+  for (; i + kAtOnce <= pairs; i += kAtOnce)
+    for (std::uint64_t k = 0; k < kAtOnce; ++k) {
+      to[2 * (i + k)] = even[i + k];
+      to[2 * (i + k) + 1] = odd[i + k];
+    }
+  for (; i < pairs; ++i) {
+    to[2 * i] = even[i];
+    to[2 * i + 1] = odd[i];
+  }
+  if (size % 2) to[size - 1] = even[pairs];
+}
+
 // ZIPS: deflated differences of bytes, the even ones before the odd ones. A block that would not shrink is stored.
 bool unpack(bool zips, const char* from, std::uint64_t packed, std::uint64_t size, Inflater& inflater) {
   inflater.plain.resize(size);
@@ -37,20 +80,8 @@ bool unpack(bool zips, const char* from, std::uint64_t packed, std::uint64_t siz
           LIBDEFLATE_SUCCESS ||
       got != size)
     return false;
-  auto* bytes = reinterpret_cast<unsigned char*>(inflater.packed.data());
-  unsigned last = size > 0 ? bytes[0] : 0u;
-  for (std::size_t i = 1; i < size; ++i) {
-    last = (last + bytes[i] - 128u) & 255u;
-    bytes[i] = static_cast<unsigned char>(last);
-  }
-  const char *even = inflater.packed.data(), *odd = even + (size + 1) / 2;
-  char* to = inflater.plain.data();
-  const std::size_t pairs = size / 2;
-  for (std::size_t i = 0; i < pairs; ++i) {
-    to[2 * i] = even[i];
-    to[2 * i + 1] = odd[i];
-  }
-  if (size % 2) to[size - 1] = even[pairs];
+  sumDifferences(inflater.packed.data(), size);
+  interleave(inflater.packed.data(), size, inflater.plain.data());
   return true;
 }
 

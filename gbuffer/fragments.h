@@ -20,28 +20,16 @@ struct Fragment {
 };
 static_assert(sizeof(Fragment) == 48);
 
-// The part of it that compositing by depth reads: its first two rows.
-struct LeanFragment {
-  glm::vec3 radiance;
-  float coverage;
-  glm::vec3 transmission;
-  float z;
-};
-static_assert(sizeof(LeanFragment) == 32);
-
 // Lists of the pixels of one window, concatenated row by row.
-template <class Record>
-struct ListsOf {
+struct FragmentLists {
   Window window;                       // in display coordinates
   std::vector<std::uint64_t> offsets;  // size width * height + 1: pixel i owns [offsets[i], offsets[i + 1])
-  std::vector<Record> fragments;
+  std::vector<Fragment> fragments;
   // Empty unless a layer disperses, else one per fragment: refraction delta of red minus `offset`, of blue minus it.
   std::vector<glm::vec4> dispersion;
   Image<glm::vec4> solid;  // nearest fragment that hides everything: rgb, planar z (+inf: none)
 
   bool disperses() const { return !dispersion.empty(); }
 };
-using FragmentLists = ListsOf<Fragment>;
-using LeanLists = ListsOf<LeanFragment>;
 
 }  // namespace pellucid

@@ -1,5 +1,6 @@
 #include <Imath/half.h>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <cstring>
@@ -29,6 +30,7 @@ class Encoder {
     const std::uint16_t bits = imath_float_to_half(value);
     std::memcpy(bytes.data() + i * 2, &bits, 2);
   }
+  void add(const Encoder& other) { clamped_ += other.clamped_; }
   void noteTo(std::vector<std::string>& notes) const {
     if (clamped_ > 0) notes.push_back(fmt::format("{} values beyond 65504, the largest half, became 65504", clamped_));
   }
@@ -44,14 +46,21 @@ std::string channelName(const ExtraLayer& layer, const std::string& suffix) {
 std::vector<ExrChannel> channelsOf(const std::vector<ExtraLayer>& layers, const Window& data, PixelType type,
                                    Encoder& encoder) {
   std::vector<ExrChannel> channels;
+  std::vector<const Image<float>*> planes;
   for (const ExtraLayer& layer : layers)
     for (const auto& [suffix, plane] : layer.channels) {
       if (plane.width() != data.width() || plane.height() != data.height())
         throw std::logic_error(channelName(layer, suffix) + ": a layer of another size than the data window");
-      ExrChannel channel{channelName(layer, suffix), type, std::vector<std::byte>(plane.size() * bytesOf(type))};
-      for (std::size_t i = 0; i < plane.size(); ++i) encoder.put(channel, i, plane[i]);
-      channels.push_back(std::move(channel));
+      channels.push_back({channelName(layer, suffix), type, {}});
+      planes.push_back(&plane);
     }
+  std::vector<Encoder> encoders(channels.size());
+  tbb::parallel_for(std::size_t{0}, channels.size(), [&](std::size_t c) {
+    const Image<float>& plane = *planes[c];
+    channels[c].bytes.resize(plane.size() * bytesOf(type));
+    for (std::size_t i = 0; i < plane.size(); ++i) encoders[c].put(channels[c], i, plane[i]);
+  });
+  for (const Encoder& each : encoders) encoder.add(each);
   return channels;
 }
 

@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,7 +22,9 @@ ExtraLayer layersOf(const FlatPicture& flat) {
   const int width = flat.data.width(), height = flat.data.height();
   const auto plane = [&](auto&& value) {
     Image<float> image(width, height);
-    for (std::size_t i = 0; i < image.size(); ++i) image[i] = value(i);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.size(), 1 << 16), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i) image[i] = value(i);
+    });
     return image;
   };
   ExtraLayer layer;

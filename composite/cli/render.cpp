@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "composite/antialias.h"
 #include "composite/cli/lists.h"
@@ -243,32 +244,32 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
     sample.sample = samplePosition(i, settings.samples);
     sample.footprint = 1.0f / std::sqrt(static_cast<float>(settings.samples));
     if (settings.systems && !settings.sortedTruth) {
-      const Veil veil = stages.time("passes of systems", [&] {
+      Veil veil = stages.time("passes of systems", [&] {
         return veilFromSystems(*pass, *settings.systems, settings, sample, gbuffer, counts);
       });
       statistics = pass->statistics();
-      stages.time("average", [&] { mean.add(veil); });
+      stages.time("average", [&] { mean.add(std::move(veil)); });
     } else if (stochastic && settings.sampler) {
-      const Veil veil = stages.time("sample", [&] {
+      Veil veil = stages.time("sample", [&] {
         return sampleOnDevice(settings, *pass, sample, i, gbuffer, *stochastic, statistics);
       });
-      stages.time("average", [&] { mean.add(veil); });
+      stages.time("average", [&] { mean.add(std::move(veil)); });
     } else if (settings.sortedTruth || settings.listMethod || stochastic || settings.tolerance || settings.exactSums ||
                settings.deepOpaque || !deep.empty() || !pass) {
-      const Veil veil = stages.time(settings.sortedTruth ? "lists and sort" : "lists and method", [&] {
+      Veil veil = stages.time(settings.sortedTruth ? "lists and sort" : "lists and method", [&] {
         return ListPainter(pass, deep, settings, sample, gbuffer, counts, stochastic ? &*stochastic : nullptr, i)
             .paint();
       });
       if (pass) statistics = pass->statistics();
-      stages.time("average", [&] { mean.add(veil); });
+      stages.time("average", [&] { mean.add(std::move(veil)); });
     } else {
       OitPlanes planes = stages.time("transparent pass", [&] {
         return accumulateMixed(*pass, sample, gbuffer, camera, settings.lowResolution, statistics);
       });
-      const Veil veil = stages.time("resolve", [&] {
+      Veil veil = stages.time("resolve", [&] {
         return resolveSums(settings.device, std::move(planes), settings.resolve, settings.lookup, gbuffer);
       });
-      stages.time("average", [&] { mean.add(veil); });
+      stages.time("average", [&] { mean.add(std::move(veil)); });
     }
     if (!pass) continue;
     const int systemPasses = counts.passes;

@@ -9,7 +9,9 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <numeric>
 
+#include "composite/depth_order.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid {
@@ -19,12 +21,6 @@ struct Source {
   DeepChannels channels;
   std::unique_ptr<DeepReader> reader;
   DeepRows rows;
-};
-
-// Where a sample lies in depth and in the rows: what is sorted.
-struct Place {
-  float z;
-  std::uint32_t index;
 };
 
 // Composites pixels of points whose depths differ, the common case, without making records of them.
@@ -43,24 +39,12 @@ class PointPixel {
   // False when the samples need the general rules: volumes, coincident depths, values out of range.
   bool composite(std::uint64_t begin, std::uint64_t end, DeepFlat& flat, float& frontZ) {
     const auto count = static_cast<std::size_t>(end - begin);
-    places_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const float z = z_[begin + i];
-      if (zBack_ >= 0 && back_[begin + i] > z) return false;
-      // Insertion: lists are short, and often sorted already.
-      std::size_t at = i;
-      while (at > 0 && places_[at - 1].z > z) {
-        places_[at] = places_[at - 1];
-        --at;
-      }
-      places_[at] = {z, static_cast<std::uint32_t>(i)};
-      if (!(z <= std::numeric_limits<float>::max()) || count > kShort) return false;
-    }
-    for (std::size_t i = 1; i < count; ++i)
-      if (places_[i].z == places_[i - 1].z) return false;
+    for (std::uint64_t i = begin; i < end; ++i)
+      if (!(z_[i] <= std::numeric_limits<float>::max()) || (zBack_ >= 0 && back_[i] > z_[i])) return false;
+    if (!sort(z_ + begin, count)) return false;
     double left[4] = {1, 1, 1, 1}, light[3] = {0, 0, 0};
-    for (const Place& place : places_) {
-      const std::uint64_t i = begin + place.index;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint64_t i = begin + order_[k];
       double sum = 0;
       bool inRange = true;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -79,19 +63,30 @@ class PointPixel {
     }
     for (int c = 0; c < 3; ++c) flat.light[c] = light[c];
     for (int c = 0; c < 4; ++c) flat.opacity[c] = 1.0 - left[c];
-    frontZ = places_.empty() ? std::numeric_limits<float>::infinity() : places_[0].z;
+    frontZ = count == 0 ? std::numeric_limits<float>::infinity() : z_[begin + order_[0]];
     return true;
   }
 
  private:
-  static constexpr std::size_t kShort = 128;  // beyond, insertion costs more than the general sort
+  // False where two depths are the same.
+  bool sort(const float* z, std::size_t count) {
+    if (order_.size() < count) order_.resize(count);
+    if (count <= kMostRanked) return orderByDepth(z, count, order_.data());
+    std::iota(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count), 0u);
+    std::sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count),
+              [&](std::uint32_t a, std::uint32_t b) { return z[a] < z[b]; });
+    for (std::size_t i = 1; i < count; ++i)
+      if (z[order_[i]] == z[order_[i - 1]]) return false;
+    return true;
+  }
+
   static const float* column(const DeepRows& rows, int index) {
     return rows.channels.empty() ? nullptr : rows.channels[static_cast<std::size_t>(index)].data();
   }
   int zBack_;
   const float *z_ = nullptr, *back_ = nullptr, *alpha_ = nullptr;
   const float *light_[3] = {}, *opacity_[3] = {};
-  std::vector<Place> places_;
+  std::vector<std::uint32_t> order_;
 };
 
 // Range of the pixel's samples, empty outside the rows.
@@ -165,11 +160,12 @@ FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t mos
     for (Source& source : sources) {
       const Window& data = source.reader->data();
       const int from = std::max(y, data.y0), to = std::min(end, data.y1);
-      source.rows = {};
-      if (from < to) {
-        source.rows = source.reader->read(from, to, most);
-        end = source.rows.window.y1;
+      if (from >= to) {
+        source.rows = {};
+        continue;
       }
+      source.rows = source.reader->read(from, to, most, std::move(source.rows));
+      end = source.rows.window.y1;
     }
     for (const Source& source : sources)
       for (int row = std::max(y, source.rows.window.y0); row < std::min(end, source.rows.window.y1); ++row)

@@ -26,51 +26,16 @@ std::size_t countIn(const Image<float>& count, const Window& window) {
   return sum;
 }
 
-// Bytes that one storage block may have.
-std::size_t largestBlock() {
-  GLint64 bytes = 0;
-  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
-  return static_cast<std::size_t>(std::max<GLint64>(bytes, 0));
-}
-
-constexpr int kTile = 64;  // edge of what software rasterisers give to one thread
-
-// Fragments of a block. Few, so that they are still in the cache when they are read; but so many that drawing the
-// geometry once more for each block is a small part of the work. 0: blocks do not pay.
-std::size_t blockSize(const Renderer& renderer, std::size_t recordBytes) {
-  const GeometryStream& geometry = renderer.geometry();
-  if (!renderer.picksTiles() || !geometry.resident()) return 0;
-  const std::size_t cached = (std::size_t{9} << 19) / recordBytes;
-  constexpr std::size_t kPerTriangle = 128, kPerDraw = 4096;  // a draw costs some microseconds, a fragment 40 ns
-  return std::max(cached, geometry.triangles() * kPerTriangle + geometry.draws() * kPerDraw);
-}
-
-template <class Record>
 class BandWriter {
  public:
-  void write(Renderer& renderer, const Image<float>& count, const Window& band, ListsOf<Record>& lists);
+  void write(Renderer& renderer, const Image<float>& count, const Window& band, FragmentLists& lists);
 
  private:
-  // A buffer that only grows: fresh memory for every band costs more than the lists themselves.
-  struct Room {
-    Buffer buffer = Buffer::make();
-    GLsizeiptr bytes = 0;
-    void atLeast(GLsizeiptr wanted, GLuint binding, const char* what) {
-      if (wanted > bytes) {
-        glNamedBufferData(buffer.name(), wanted, nullptr, GL_STREAM_READ);
-        checkGl(what);
-        bytes = wanted;
-      }
-      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name());
-    }
-  };
-  Room fragments_, cursors_, dispersion_;
+  ListBuffer fragments_, cursors_, dispersion_;
   std::vector<std::uint32_t> places_;
 };
 
-template <class Record>
-void BandWriter<Record>::write(Renderer& renderer, const Image<float>& count, const Window& band,
-                               ListsOf<Record>& lists) {
+void BandWriter::write(Renderer& renderer, const Image<float>& count, const Window& band, FragmentLists& lists) {
   lists.offsets.assign(1, 0);
   places_.clear();
   for (int y = band.y0; y < band.y1; ++y)
@@ -81,28 +46,53 @@ void BandWriter<Record>::write(Renderer& renderer, const Image<float>& count, co
   lists.fragments.resize(lists.offsets.back());
   if (lists.fragments.empty()) return;
 
-  const auto bytes = static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Record));
+  const auto bytes = static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Fragment));
   const auto cursorBytes = static_cast<GLsizeiptr>(places_.size() * sizeof(std::uint32_t));
-  fragments_.atLeast(bytes, 3, "making room for fragment lists");
-  cursors_.atLeast(cursorBytes, 4, "making room for the cursors of fragment lists");
-  glNamedBufferSubData(cursors_.buffer.name(), 0, cursorBytes, places_.data());
-  constexpr bool kLean = std::is_same_v<Record, LeanFragment>;
-  lists.dispersion.resize(!kLean && renderer.disperses() ? lists.fragments.size() : 0);
+  fragments_.atLeast(lists.fragments.size() * sizeof(Fragment), 3, "making room for fragment lists");
+  cursors_.atLeast(places_.size() * sizeof(std::uint32_t), 4, "making room for the cursors of fragment lists");
+  glNamedBufferSubData(cursors_.name(), 0, cursorBytes, places_.data());
+  lists.dispersion.resize(renderer.disperses() ? lists.fragments.size() : 0);
   const auto dispersionBytes = static_cast<GLsizeiptr>(lists.dispersion.size() * sizeof(glm::vec4));
-  if (lists.disperses()) dispersion_.atLeast(dispersionBytes, 7, "making room for dispersion");
+  if (lists.disperses()) dispersion_.atLeast(lists.dispersion.size() * sizeof(glm::vec4), 7, "making room for dispersion");
   renderer.setBand(band);
   renderer.targets().beginNothing();
-  renderer.draw(kLean ? Output::leanList : Output::list, {band});
+  renderer.draw(Output::list, {band});
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(fragments_.buffer.name(), 0, bytes, lists.fragments.data());
-  glGetNamedBufferSubData(cursors_.buffer.name(), 0, cursorBytes, places_.data());
-  if (lists.disperses()) glGetNamedBufferSubData(dispersion_.buffer.name(), 0, dispersionBytes, lists.dispersion.data());
+  glGetNamedBufferSubData(fragments_.name(), 0, bytes, lists.fragments.data());
+  glGetNamedBufferSubData(cursors_.name(), 0, cursorBytes, places_.data());
+  if (lists.disperses()) glGetNamedBufferSubData(dispersion_.name(), 0, dispersionBytes, lists.dispersion.data());
   checkGl("reading fragment lists back");
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (places_[i] != lists.offsets[i + 1]) throw std::logic_error("fragments counted and fragments listed differ");
 }
 
 }  // namespace
+
+void ListBuffer::atLeast(std::size_t wanted, GLuint binding, const char* what) {
+  if (wanted > bytes_) {
+    glNamedBufferData(buffer_.name(), static_cast<GLsizeiptr>(wanted), nullptr, GL_STREAM_READ);
+    checkGl(what);
+    bytes_ = wanted;
+  }
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.name());
+}
+
+std::size_t largestStorageBlock() {
+  GLint64 bytes = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+  return static_cast<std::size_t>(std::max<GLint64>(bytes, 0));
+}
+
+std::size_t lightFragments(std::size_t triangles, std::size_t draws) {
+  constexpr std::size_t kPerTriangle = 128, kPerDraw = 4096;  // a draw costs some microseconds, a fragment 40 ns
+  return triangles * kPerTriangle + draws * kPerDraw;
+}
+
+std::size_t blockSize(const Renderer& renderer, std::size_t recordBytes) {
+  const GeometryStream& geometry = renderer.geometry();
+  if (!renderer.picksTiles() || !geometry.resident()) return 0;
+  return std::max(kListCache / recordBytes, lightFragments(geometry.triangles(), geometry.draws()));
+}
 
 std::vector<Window> bandsOf(const Image<float>& count, const Window& area, std::size_t most) {
   std::vector<Window> bands;
@@ -159,20 +149,14 @@ std::vector<Window> blocksOf(const Image<float>& count, const Window& window, in
   return blocks;
 }
 
-template <class Record>
-void listFragments(Renderer& renderer, std::size_t bytes,
-                   const std::function<void(ListsOf<Record>&, const Window&)>& band) {
+std::vector<Window> countedWindows(Renderer& renderer, std::size_t recordBytes, std::size_t bytes, Image<float>& count) {
   Targets& targets = renderer.targets();
   const std::vector<Window> tiles = renderer.tiles();
   targets.beginCount();
   renderer.draw(Output::count, tiles);
-  const Image<float> count = targets.readCount();
-  Image<glm::vec4> solid(targets.width(), targets.height(), glm::vec4(0, 0, 0, INFINITY));
-  if (renderer.hasSolids()) targets.readSolid(solid, 0, 0);
-
-  const std::size_t blockLimit = largestBlock() / sizeof(Record);
-  const std::size_t most = std::clamp<std::size_t>(bytes / sizeof(Record), 1, blockLimit);
-  const std::size_t few = blockSize(renderer, sizeof(Record));
+  count = targets.readCount();
+  const std::size_t most = std::clamp<std::size_t>(bytes / recordBytes, 1, largestStorageBlock() / recordBytes);
+  const std::size_t few = blockSize(renderer, recordBytes);
   std::vector<Window> windows;
   for (const Window& tile : tiles)
     for (const Window& window : bandsOf(count, tile, most)) {
@@ -180,25 +164,41 @@ void listFragments(Renderer& renderer, std::size_t bytes,
         windows.push_back(window);
         continue;
       }
-      const std::vector<Window> blocks = blocksOf(count, window, kTile, few);
+      const std::vector<Window> blocks = blocksOf(count, window, kRasterTile, few);
       windows.insert(windows.end(), blocks.begin(), blocks.end());
     }
+  return windows;
+}
 
-  BandWriter<Record> writer;
-  ListsOf<Record> lists;
+void requireListable(const Image<float>& count, const Window& window, std::size_t recordBytes) {
+  const std::size_t limit = largestStorageBlock() / recordBytes;
+  if (window.width() != 1 || window.height() != 1 || countAt(count, window.x0, window.y0) <= limit) return;
+  throw ResourceError(fmt::format("GL: {} transparent fragments on one pixel: the device lists at most {}",
+                                  countAt(count, window.x0, window.y0), limit));
+}
+
+Image<glm::vec4> solidOf(const Image<glm::vec4>& solid, const Window& window) {
+  Image<glm::vec4> part(window.width(), window.height());
+  for (int y = window.y0; y < window.y1; ++y)
+    std::copy(&solid.at(window.x0, y), &solid.at(window.x0, y) + window.width(), part.row(y - window.y0));
+  return part;
+}
+
+void listFragments(Renderer& renderer, std::size_t bytes,
+                   const std::function<void(FragmentLists&, const Window&)>& band) {
+  Image<float> count;
+  const std::vector<Window> windows = countedWindows(renderer, sizeof(Fragment), bytes, count);
+  Targets& targets = renderer.targets();
+  Image<glm::vec4> solid(targets.width(), targets.height(), glm::vec4(0, 0, 0, INFINITY));
+  if (renderer.hasSolids()) targets.readSolid(solid, 0, 0);
+  BandWriter writer;
+  FragmentLists lists;
   for (const Window& window : windows) {
-    if (window.width() == 1 && window.height() == 1 && countAt(count, window.x0, window.y0) > blockLimit)
-      throw ResourceError(fmt::format("GL: {} transparent fragments on one pixel: the device lists at most {}",
-                                      countAt(count, window.x0, window.y0), blockLimit));
+    requireListable(count, window, sizeof(Fragment));
     writer.write(renderer, count, window, lists);
-    lists.solid = Image<glm::vec4>(window.width(), window.height());
-    for (int y = window.y0; y < window.y1; ++y)
-      std::copy(&solid.at(window.x0, y), &solid.at(window.x0, y) + window.width(), lists.solid.row(y - window.y0));
+    lists.solid = solidOf(solid, window);
     band(lists, window);
   }
 }
-
-template void listFragments<Fragment>(Renderer&, std::size_t, const std::function<void(FragmentLists&, const Window&)>&);
-template void listFragments<LeanFragment>(Renderer&, std::size_t, const std::function<void(LeanLists&, const Window&)>&);
 
 }  // namespace pellucid::gl

@@ -15,10 +15,42 @@ std::vector<Window> bandsOf(const Image<float>& count, const Window& area, std::
 // one tile.
 std::vector<Window> blocksOf(const Image<float>& count, const Window& window, int edge, std::size_t most);
 
-// After Renderer::begin(). `band` gets each band's lists and its window in pixels of the super-tile. Record is Fragment
-// or LeanFragment.
+// Draws the count of fragments per pixel and cuts the super-tile into windows: tiles as the settings want them, such that
+// each window's records fit `bytes` or are of one pixel, and blocks that a cache holds where blockSize() says so.
+std::vector<Window> countedWindows(Renderer& renderer, std::size_t recordBytes, std::size_t bytes, Image<float>& count);
+
+// Throws ResourceError for a pixel that stands alone and has more fragments than the device can list.
+void requireListable(const Image<float>& count, const Window& window, std::size_t recordBytes);
+
+// A window's part of the plane of solids.
+Image<glm::vec4> solidOf(const Image<glm::vec4>& solid, const Window& window);
+
+// Fragments beside which drawing the geometry once more is a small part of the work.
+std::size_t lightFragments(std::size_t triangles, std::size_t draws);
+
+// Fragments of a block, after a sweep. Few, so that they are still in the cache when they are read, but as many as
+// lightFragments(). 0: blocks do not pay.
+std::size_t blockSize(const Renderer& renderer, std::size_t recordBytes);
+
+// Bytes that one storage block may have.
+std::size_t largestStorageBlock();
+
+constexpr int kRasterTile = 64;                        // edge of what software rasterisers give to one thread
+constexpr std::size_t kListCache = std::size_t{9} << 19;  // bytes of lists that a cache holds beside all else
+
+// A buffer that only grows: fresh memory for every band costs more than the lists themselves.
+class ListBuffer {
+ public:
+  void atLeast(std::size_t wanted, GLuint binding, const char* what);  // bytes; bound to the storage binding
+  GLuint name() const { return buffer_.name(); }
+
+ private:
+  Buffer buffer_ = Buffer::make();
+  std::size_t bytes_ = 0;
+};
+
+// After Renderer::begin(). `band` gets each band's lists and its window in pixels of the super-tile.
 //   bytes  what the device's copy of a band may have, and ours
-template <class Record>
-void listFragments(Renderer& renderer, std::size_t bytes, const std::function<void(ListsOf<Record>&, const Window&)>& band);
+void listFragments(Renderer& renderer, std::size_t bytes, const std::function<void(FragmentLists&, const Window&)>& band);
 
 }  // namespace pellucid::gl

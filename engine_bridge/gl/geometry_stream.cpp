@@ -28,6 +28,13 @@ std::uint32_t trianglesOf(const Primitive& primitive) {
   return static_cast<std::uint32_t>(primitive.triangles());
 }
 
+// What a sweep draws of an instance; null for none.
+const Primitive* drawn(const Scene& scene, const Instance& instance, bool opaque) {
+  const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(instance.primitive));
+  const bool transparent = scene.materials.at(static_cast<std::size_t>(primitive.material)).transparent();
+  return transparent == opaque ? nullptr : &primitive;
+}
+
 // Fisher-Yates over a run of at most kShuffledRun triangles.
 std::uint32_t shuffledTurn(std::uint64_t key, std::uint32_t count, std::uint32_t turn) {
   std::uint32_t order[kShuffledRun];
@@ -52,8 +59,9 @@ std::size_t ChunkData::bytes() const {
 ChunkCutter::ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes, bool opaque)
     : scene_(scene), order_(order), chunkBytes_(chunkBytes) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(scene.instances[i].primitive));
-    if (scene.materials.at(static_cast<std::size_t>(primitive.material)).transparent() == opaque) continue;
+    const Primitive* found = drawn(scene, scene.instances[i], opaque);
+    if (!found) continue;
+    const Primitive& primitive = *found;
     const std::uint32_t triangles = trianglesOf(primitive);
     const std::uint32_t step = order.kind == SubmissionOrder::shuffle ? kShuffledRun : std::max(triangles, 1u);
     for (std::uint32_t first = 0; first < triangles; first += step)
@@ -138,7 +146,13 @@ bool ChunkCutter::next(ChunkData& chunk) {
   return !chunk.draws.empty();
 }
 
-GeometryStream::GeometryStream(const Scene& scene, bool opaque) : scene_(scene), opaque_(opaque) {}
+GeometryStream::GeometryStream(const Scene& scene, bool opaque) : scene_(scene), opaque_(opaque) {
+  for (const Instance& instance : scene.instances)
+    if (const Primitive* primitive = drawn(scene, instance, opaque)) {
+      sceneTriangles_ += trianglesOf(*primitive);
+      ++sceneInstances_;
+    }
+}
 
 GeometryStream::Slot GeometryStream::makeSlot() const {
   Slot slot;

@@ -66,6 +66,8 @@ class GeometryStream {
   // same arguments are not uploaded again.
   void sweep(SubmissionOrder order, std::size_t budgetBytes,
              const std::function<void(const std::vector<ChunkDraw>&)>& draw);
+  std::size_t sceneTriangles() const { return sceneTriangles_; }  // that a sweep draws
+  std::size_t sceneInstances() const { return sceneInstances_; }  // that they belong to
   std::size_t chunks() const { return chunks_; }        // of the last sweep
   std::size_t triangles() const { return triangles_; }  // of the last sweep
   std::size_t draws() const { return draws_; }          // of the last sweep
@@ -88,6 +90,7 @@ class GeometryStream {
   SubmissionOrder residentOrder_;
   std::size_t residentBudget_ = 0;
   bool resident_ = false;  // every chunk lies in a slot
+  std::size_t sceneTriangles_ = 0, sceneInstances_ = 0;
   std::size_t chunks_ = 0, triangles_ = 0, draws_ = 0;
   ChunkData staging_;
 };

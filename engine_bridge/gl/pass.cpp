@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <type_traits>
 
 #include "engine_bridge/gl/fog_pass.h"
 #include "engine_bridge/gl/fragment_lists.h"
+#include "engine_bridge/gl/lean_lists.h"
 #include "engine_bridge/gl/published_targets.h"
 #include "engine_bridge/gl/renderer.h"
 #include "engine_bridge/gl/rim_targets.h"
@@ -26,8 +28,8 @@ struct TransparentPass::Impl {
     return *published;
   }
 
-  template <class Record>
-  void list(const PassSettings& settings, const std::function<void(const ListsOf<Record>&)>& tile);
+  template <class Lists>
+  void list(const PassSettings& settings, const std::function<void(const Lists&)>& tile);
 
   void finish(std::chrono::steady_clock::time_point start, std::size_t tiles, std::size_t fragments) {
     statistics.triangles = renderer.geometry().triangles();
@@ -173,31 +175,49 @@ RimPlanes TransparentPass::rims(const PassSettings& settings) {
   return planes;
 }
 
-template <class Record>
-void TransparentPass::Impl::list(const PassSettings& settings, const std::function<void(const ListsOf<Record>&)>& tile) {
+namespace {
+
+std::size_t sizeOf(const FragmentLists& lists) {
+  return lists.fragments.size();
+}
+
+std::size_t sizeOf(const LeanLists& lists) {
+  std::size_t sum = 0;
+  for (const LeanLists::Range& range : lists.ranges) sum += range.count;
+  return sum;
+}
+
+}  // namespace
+
+template <class Lists>
+void TransparentPass::Impl::list(const PassSettings& settings, const std::function<void(const Lists&)>& tile) {
   const auto start = std::chrono::steady_clock::now();
   std::size_t bands = 0, fragments = 0;
   statistics.clamps = {};
   for (const Window& part : renderer.superTiles()) {
     // Half for the geometry, half for the fragments: a quarter on the device, a quarter here.
     renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes / 2);
-    gl::listFragments<Record>(renderer, settings.budgetBytes / 4, [&](ListsOf<Record>& lists, const Window& band) {
+    const auto deliver = [&](Lists& lists, const Window& band) {
       const int x = gbuffer->data.x0 + part.x0, y = gbuffer->data.y0 + part.y0;
       lists.window = {x + band.x0, y + band.y0, x + band.x1, y + band.y1};
       ++bands;
-      fragments += lists.fragments.size();
+      fragments += sizeOf(lists);
       tile(lists);
-    });
+    };
+    if constexpr (std::is_same_v<Lists, LeanLists>)
+      gl::listLean(renderer, settings.budgetBytes / 4, deliver);
+    else
+      gl::listFragments(renderer, settings.budgetBytes / 4, deliver);
   }
   finish(start, bands, fragments);
 }
 
 void TransparentPass::fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& tile) {
-  impl_->list<Fragment>(settings, tile);
+  impl_->list(settings, tile);
 }
 
 void TransparentPass::leanFragments(const PassSettings& settings, const std::function<void(const LeanLists&)>& tile) {
-  impl_->list<LeanFragment>(settings, tile);
+  impl_->list(settings, tile);
 }
 
 }  // namespace pellucid

@@ -289,7 +289,7 @@ void Renderer::traceShadows(const Window& superTile) {
   describeSurfaces();
   rayTable_.begin(superTile.width(), superTile.height(), lights_);
   const glm::dvec2 origin = glm::dvec2(superTile.x0, superTile.y0) + settings_.sample - 0.5;
-  listFragments<Fragment>(*this, settings_.budgetBytes / 4, [&](FragmentLists& lists, const Window& band) {
+  listFragments(*this, settings_.budgetBytes / 4, [&](FragmentLists& lists, const Window& band) {
     rayTable_.add(lists, band, *settings_.shadowRays, [&](int x, int y, float z) {
       return viewPoint(*gbuffer_, camera_, origin + glm::dvec2(x, y), static_cast<double>(z));
     });

@@ -11,6 +11,7 @@
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/lean_lists.h"
 #include "gbuffer/occluders.h"
 #include "gbuffer/published.h"
 #include "gbuffer/rim_planes.h"
@@ -125,7 +126,8 @@ class TransparentPass {
   // Exact lists of every transparent fragment in front of the G-buffer and of the nearest solid, tile by tile, top to
   // bottom; together the tiles cover the data window. Fragments of a pixel are in no order.
   void fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& tile);
-  // The same without what scatters and without identities, at two thirds of the memory's traffic.
+  // The same without what scatters and without identities, for less of the memory's traffic, in blocks of any order; the
+  // lists hold until `tile` returns.
   void leanFragments(const PassSettings& settings, const std::function<void(const LeanLists&)>& tile);
 
   // Whether some material of the scene is cut out, lit by surroundings, and has rims to infer occlusion for.
