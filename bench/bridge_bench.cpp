@@ -105,6 +105,7 @@ struct Kind {
   pld_method method;
   pld_tier tier;
   uint32_t features;
+  uint32_t fixed;
   double aim;  // ratio to the alpha-blended pass; 0: for the table alone
 };
 
@@ -240,6 +241,8 @@ void measure(benchmark::State& state, const Kind& kind) {
   info.depth = PLD_DEPTH_DEVICE;
   pld_pass* pass = nullptr;
   need(pld_create(&info, &pass), pass);
+  const pld_frame frame = scene.frame();
+  need(pld_fix(pass, &frame, kind.fixed), pass);
   need(pld_resize(pass, kWidth, kHeight), pass);
   std::vector<std::pair<pld_stage, GLuint>> stages;
   const auto add = [&](pld_stage stage) {
@@ -251,7 +254,6 @@ void measure(benchmark::State& state, const Kind& kind) {
   if (kind.method == PLD_METHOD_FRONT_TAIL) add(PLD_STAGE_FRONT);
   add(PLD_STAGE_LAYERS);
   const GLuint blend = scene.shader(nullptr, kind.lit);
-  const pld_frame frame = scene.frame();
   const pld_target target = scene.host().target();
   const auto layers = [&] {
     for (const auto& [stage, program] : stages) {
@@ -283,22 +285,25 @@ void measure(benchmark::State& state, const Kind& kind) {
 
 constexpr uint32_t kColoured = PLD_FEATURE_COLOURED, kLight = PLD_FEATURE_LIGHT,
                    kScatter = PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION, kSolids = PLD_FEATURE_SOLIDS;
+// All but the exposure, which engines adapt.
+constexpr uint32_t kFixed = PLD_FIXED_UNITS | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION | PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION;
 const Kind kKinds[] = {
-    {"lit, float, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter | kSolids, 1.3},
-    {"lit, half, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter | kSolids, 0},
-    {"lit, published, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, kScatter | kSolids, 0},
-    {"lit, float, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, 1.3},
-    {"lit, float, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_REFRACTION, 0},
-    {"lit, float, diffusion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_DIFFUSION, 0},
-    {"lit, float, coloured, light, solids", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight | kSolids, 0},
-    {"lit, float, coloured, light", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, 1.3},
-    {"unlit, float, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0, 3},
-    {"unlit, float, grey, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kLight, 3},
-    {"unlit, float, coloured", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured, 3},
-    {"unlit, float, coloured, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, 3},
-    {"unlit, half, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, 0},
-    {"unlit, published", false, PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, 0, 0},
-    {"unlit, float, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0, 0}};
+    {"lit, float, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter | kSolids, kFixed, 1.3},
+    {"lit, half, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter | kSolids, kFixed, 0},
+    {"lit, published, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, kScatter | kSolids, kFixed, 0},
+    {"lit, float, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, kFixed, 1.3},
+    {"lit, float, full model, nothing fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, 0, 0},
+    {"lit, float, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
+    {"lit, float, diffusion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_DIFFUSION, kFixed, 0},
+    {"lit, float, coloured, light, solids", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight | kSolids, kFixed, 0},
+    {"lit, float, coloured, light", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, kFixed, 1.3},
+    {"unlit, float, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0, kFixed, 3},
+    {"unlit, float, grey, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kLight, kFixed, 3},
+    {"unlit, float, coloured", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured, kFixed, 3},
+    {"unlit, float, coloured, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, kFixed, 3},
+    {"unlit, half, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, kFixed, 0},
+    {"unlit, published", false, PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, 0, kFixed, 0},
+    {"unlit, float, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0, kFixed, 0}};
 
 }  // namespace
 }  // namespace pellucid::test

@@ -84,6 +84,7 @@ pld_status pld_pass::create(const pld_create_info& info) {
   permutation_.features = info.features;
   permutation_.weight = info.weight;
   permutation_.depth = info.depth;
+  permutation_.rows = info.rows;
   const std::string conflict = conflictOf(permutation_);
   if (!conflict.empty()) return fail(PLD_ERROR_UNSUPPORTED, "pld_create: %s", conflict.c_str());
   if (permutation_.has(PLD_FEATURE_DIFFUSION) && !gl.TextureBarrier)

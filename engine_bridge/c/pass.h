@@ -16,6 +16,7 @@ struct pld_pass {
   // Each leaves GL as it was unless it returns PLD_OK, and begin() until end().
   pld_status create(const pld_create_info& info);
   pld_status resize(int width, int height);
+  pld_status fix(const pld_frame& frame, uint32_t fields);
   pld_status begin(pld_stage stage, const pld_frame& frame);
   pld_status end();
   pld_status resolve(const pld_target& target);
@@ -43,6 +44,8 @@ struct pld_pass {
   };
 
   pld_status checkFrame(const pld_frame& frame, bool isFirst, GLenum& depthAttachment);
+  pld_status checkNumbers(const char* call, const pld_frame& frame, uint32_t fields);
+  const char* changedField(const pld_frame& frame) const;
   pld_status checkOrder(pld_stage stage);
   pld_status checkGlsl(const char* call, int version);
   pld_status checkShadowInfo(const pld_shadow_info& info);

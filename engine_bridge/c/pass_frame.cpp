@@ -15,13 +15,8 @@ bool isPositive(float x) {
   return x > 0.0f && std::isfinite(x);
 }
 
-bool isPerspective(const float* p) {
-  return p[3] == 0.0f && p[7] == 0.0f && p[11] == -1.0f && p[15] == 0.0f;
-}
-bool isOrthographic(const float* p) {
-  return p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
-}
-
+constexpr uint32_t kEveryField = PLD_FIXED_UNITS | PLD_FIXED_EXPOSURE | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION |
+                                  PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION;
 constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims", "pellucid low resolution"};
 
 }  // namespace
@@ -42,31 +37,71 @@ pld_status pld_pass::checkOrder(pld_stage stage) {
   return PLD_OK;
 }
 
+// The numbers of a frame; of those that `fields` (pld_fixed) names.
+pld_status pld_pass::checkNumbers(const char* call, const pld_frame& frame, uint32_t fields) {
+  const auto has = [&](pld_fixed field) { return (fields & static_cast<uint32_t>(field)) != 0; };
+  if (has(PLD_FIXED_PROJECTION)) {
+    for (const float x : frame.projection)
+      if (!std::isfinite(x)) return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection holds a number that is not finite", call);
+    if (!isPerspective(frame.projection) && !isOrthographic(frame.projection))
+      return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: expected perspective with w = -z, or orthographic, by columns", call);
+    if (frame.projection[0] == 0.0f || frame.projection[5] == 0.0f)
+      return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: a focal length of 0", call);
+  }
+  if ((has(PLD_FIXED_UNITS) && !isPositive(frame.metres_per_unit)) || (has(PLD_FIXED_EXPOSURE) && !isPositive(frame.pre_exposure)))
+    return fail(PLD_ERROR_ARGUMENT, "%s: metres_per_unit %g, pre_exposure %g: expected both > 0", call,
+                static_cast<double>(frame.metres_per_unit), static_cast<double>(frame.pre_exposure));
+  if (has(PLD_FIXED_WEIGHT) && (!isPositive(frame.weight_near) || !(frame.weight_far > frame.weight_near) ||
+                                !std::isfinite(frame.weight_far) || !std::isfinite(frame.weight_exponent)))
+    return fail(PLD_ERROR_ARGUMENT, "%s: weight range %g to %g, exponent %g: expected 0 < near < far and a number", call,
+                static_cast<double>(frame.weight_near), static_cast<double>(frame.weight_far),
+                static_cast<double>(frame.weight_exponent));
+  if (has(PLD_FIXED_REFRACTION) && (frame.refract < PLD_REFRACT_NOTHING || frame.refract > PLD_REFRACT_THROUGH_SLAB))
+    return fail(PLD_ERROR_ARGUMENT, "%s: found refract %d, which pld_refract does not have", call, static_cast<int>(frame.refract));
+  if (!permutation_.scatters()) return PLD_OK;
+  if ((has(PLD_FIXED_REFRACTION) && !isPositive(frame.refract_distance)) ||
+      (has(PLD_FIXED_DIFFUSION) &&
+       (!(frame.diffusion_k0 >= 0.0f) || !std::isfinite(frame.diffusion_k0) || !isPositive(frame.diffusion_k1))))
+    return fail(PLD_ERROR_ARGUMENT, "%s: refract_distance %g, diffusion_k0 %g, diffusion_k1 %g: expected > 0, >= 0, > 0", call,
+                static_cast<double>(frame.refract_distance), static_cast<double>(frame.diffusion_k0),
+                static_cast<double>(frame.diffusion_k1));
+  return PLD_OK;
+}
+
+// The first field that a frame has otherwise than fixed; null for none.
+const char* pld_pass::changedField(const pld_frame& frame) const {
+  const pld_frame& fixed = permutation_.fixed;
+  const auto has = [&](pld_fixed field) { return (permutation_.fixedFields & static_cast<uint32_t>(field)) != 0; };
+  if (has(PLD_FIXED_UNITS) && frame.metres_per_unit != fixed.metres_per_unit) return "metres_per_unit";
+  if (has(PLD_FIXED_EXPOSURE) && frame.pre_exposure != fixed.pre_exposure) return "pre_exposure";
+  if (has(PLD_FIXED_WEIGHT) && frame.weight_near != fixed.weight_near) return "weight_near";
+  if (has(PLD_FIXED_WEIGHT) && frame.weight_far != fixed.weight_far) return "weight_far";
+  if (has(PLD_FIXED_WEIGHT) && frame.weight_exponent != fixed.weight_exponent) return "weight_exponent";
+  if (has(PLD_FIXED_REFRACTION) && frame.refract != fixed.refract) return "refract";
+  if (has(PLD_FIXED_REFRACTION) && frame.refract_distance != fixed.refract_distance) return "refract_distance";
+  if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k0 != fixed.diffusion_k0) return "diffusion_k0";
+  if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k1 != fixed.diffusion_k1) return "diffusion_k1";
+  if (has(PLD_FIXED_PROJECTION) && isOrthographic(frame.projection) != isOrthographic(fixed.projection)) return "projection";
+  return nullptr;
+}
+
+pld_status pld_pass::fix(const pld_frame& frame, uint32_t fields) {
+  if (fields & ~kEveryField) return fail(PLD_ERROR_ARGUMENT, "pld_fix: fields hold a bit that this version does not have: 0x%x", fields);
+  for (const std::string& text : seams_)
+    if (!text.empty()) return fail(PLD_ERROR_ORDER, "pld_fix: after pld_glsl, whose text it changes");
+  if (const pld_status status = checkNumbers("pld_fix", frame, fields); status != PLD_OK) return status;
+  permutation_.fixed = frame;
+  permutation_.fixedFields = fields;
+  return PLD_OK;
+}
+
 pld_status pld_pass::checkFrame(const pld_frame& frame, bool isFirst, GLenum& attachment) {
   if (frame.width < 1 || frame.height < 1 || frame.width > width_ || frame.height > height_)
     return fail(PLD_ERROR_SIZE, "pld_begin: frame: found %dx%d, expected at most pld_resize()'s %dx%d", frame.width,
                 frame.height, width_, height_);
-  for (const float x : frame.projection)
-    if (!std::isfinite(x)) return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.projection holds a number that is not finite");
-  if (!isPerspective(frame.projection) && !isOrthographic(frame.projection))
-    return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.projection: expected perspective with w = -z, or orthographic, by columns");
-  if (frame.projection[0] == 0.0f || frame.projection[5] == 0.0f)
-    return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.projection: a focal length of 0");
-  if (!isPositive(frame.metres_per_unit) || !isPositive(frame.pre_exposure))
-    return fail(PLD_ERROR_ARGUMENT, "pld_begin: metres_per_unit %g, pre_exposure %g: expected both > 0",
-                static_cast<double>(frame.metres_per_unit), static_cast<double>(frame.pre_exposure));
-  if (!isPositive(frame.weight_near) || !(frame.weight_far > frame.weight_near) || !std::isfinite(frame.weight_far) ||
-      !std::isfinite(frame.weight_exponent))
-    return fail(PLD_ERROR_ARGUMENT, "pld_begin: weight range %g to %g, exponent %g: expected 0 < near < far and a number",
-                static_cast<double>(frame.weight_near), static_cast<double>(frame.weight_far),
-                static_cast<double>(frame.weight_exponent));
-  if (frame.refract < PLD_REFRACT_NOTHING || frame.refract > PLD_REFRACT_THROUGH_SLAB)
-    return fail(PLD_ERROR_ARGUMENT, "pld_begin: found refract %d, which pld_refract does not have", static_cast<int>(frame.refract));
-  if (permutation_.scatters() && (!isPositive(frame.refract_distance) || !(frame.diffusion_k0 >= 0.0f) ||
-                                  !std::isfinite(frame.diffusion_k0) || !isPositive(frame.diffusion_k1)))
-    return fail(PLD_ERROR_ARGUMENT, "pld_begin: refract_distance %g, diffusion_k0 %g, diffusion_k1 %g: expected > 0, >= 0, > 0",
-                static_cast<double>(frame.refract_distance), static_cast<double>(frame.diffusion_k0),
-                static_cast<double>(frame.diffusion_k1));
+  if (const pld_status status = checkNumbers("pld_begin", frame, kEveryField); status != PLD_OK) return status;
+  if (const char* field = changedField(frame))
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.%s: found another than pld_fix() fixed", field);
   if (frame.colour_texture == frame.depth_texture)
     return fail(PLD_ERROR_TEXTURE, "pld_begin: colour_texture and depth_texture are one texture, %u", frame.depth_texture);
 
@@ -111,14 +146,14 @@ void pld_pass::setFrame(const pld_frame& frame) {
   const bool orthographic = isOrthographic(frame.projection);
   // Offsets are in pixels a metre where nothing converges.
   const float scale = orthographic ? 1.0f / frame.metres_per_unit : 1.0f;
-  const GLfloat block[16] = {frame.weight_near,
+  const GLfloat block[16] = {frame.metres_per_unit,
+                             frame.pre_exposure,
+                             orthographic ? 1.0f : 0.0f,
+                             0.0f,
+                             frame.weight_near,
                              frame.weight_far,
                              frame.weight_exponent,
-                             frame.metres_per_unit,
-                             frame.pre_exposure,
-                             info_.rows == PLD_ROWS_DOWN ? 1.0f : -1.0f,
-                             orthographic ? 1.0f : 0.0f,
-                             1.0f,
+                             0.0f,
                              static_cast<float>(frame.refract),
                              frame.refract_distance,
                              std::fabs(frame.projection[0]) * halfWidth * scale,

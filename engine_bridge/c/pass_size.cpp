@@ -12,6 +12,8 @@ GLuint pld_pass::makeTexture(GLenum format, int width, int height, int bits) {
   GLuint name = 0;
   gl.GenTextures(1, &name);
   gl.BindTexture(GL_TEXTURE_2D, name);
+  // Before the image: drivers make room for levels that they may expect.
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
   gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, depth ? GL_DEPTH_COMPONENT : GL_RGBA,
                 GL_FLOAT, nullptr);
   bytes_ += static_cast<uint64_t>(bits) / 8 * static_cast<uint64_t>(width) * static_cast<uint64_t>(height);

@@ -64,6 +64,14 @@ pld_status checkInfo(const pld_create_info& info) {
   return PLD_OK;
 }
 
+// Of 0.1 it ended before occlusion_texture.
+pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, pld_frame& whole) {
+  if (frame.struct_size != offsetof(pld_frame, occlusion_texture) && frame.struct_size != sizeof(pld_frame))
+    return pass->fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call, frame.struct_size, sizeof(pld_frame));
+  std::memcpy(&whole, &frame, frame.struct_size);
+  return PLD_OK;
+}
+
 }  // namespace
 
 extern "C" {
@@ -102,15 +110,21 @@ pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height) {
   return guarded(pass, "pld_resize", [&] { return pass->resize(width, height); });
 }
 
+pld_status pld_fix(pld_pass* pass, const pld_frame* frame, uint32_t fields) {
+  return guarded(pass, "pld_fix", [&] {
+    if (!frame) return pass->fail(PLD_ERROR_ARGUMENT, "pld_fix: frame is null");
+    pld_frame whole{};
+    const pld_status status = wholeFrame(pass, "pld_fix", *frame, whole);
+    return status == PLD_OK ? pass->fix(whole, fields) : status;
+  });
+}
+
 pld_status pld_begin(pld_pass* pass, pld_stage stage, const pld_frame* frame) {
   return guarded(pass, "pld_begin", [&] {
     if (!frame) return pass->fail(PLD_ERROR_ARGUMENT, "pld_begin: frame is null");
-    // Of 0.1 it ended before occlusion_texture.
     pld_frame whole{};
-    if (frame->struct_size != offsetof(pld_frame, occlusion_texture) && frame->struct_size != sizeof(pld_frame))
-      return pass->fail(PLD_ERROR_VERSION, "pld_begin: frame.struct_size: found %u, expected %zu", frame->struct_size, sizeof(pld_frame));
-    std::memcpy(&whole, frame, frame->struct_size);
-    return pass->begin(stage, whole);
+    const pld_status status = wholeFrame(pass, "pld_begin", *frame, whole);
+    return status == PLD_OK ? pass->begin(stage, whole) : status;
   });
 }
 

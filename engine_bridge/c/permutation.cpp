@@ -1,8 +1,47 @@
 #include "engine_bridge/c/permutation.h"
 
+#include <cstdio>
 #include <limits>
 
 namespace pellucid::c {
+namespace {
+
+// Nine digits give back the same float. In brackets: it may be negative.
+std::string literal(const char* name, float x) {
+  char text[100];
+  std::snprintf(text, sizeof(text), "%s (%.8ef)", name, static_cast<double>(x));
+  return text;
+}
+
+void defineFixed(const Permutation& p, std::vector<std::string>& defines) {
+  const pld_frame& frame = p.fixed;
+  const auto has = [&](pld_fixed field) { return (p.fixedFields & static_cast<uint32_t>(field)) != 0; };
+  if (has(PLD_FIXED_UNITS)) defines.push_back(literal("UNITS", frame.metres_per_unit));
+  if (has(PLD_FIXED_EXPOSURE)) defines.push_back(literal("EXPOSURE", frame.pre_exposure));
+  if (has(PLD_FIXED_PROJECTION)) defines.emplace_back(isOrthographic(frame.projection) ? "ORTHOGRAPHIC 1" : "ORTHOGRAPHIC 0");
+  if (has(PLD_FIXED_WEIGHT)) {
+    defines.push_back(literal("RANGE_NEAR", frame.weight_near));
+    defines.push_back(literal("RANGE_FAR", frame.weight_far));
+    defines.push_back(literal("EXPONENT", frame.weight_exponent));
+  }
+  if (has(PLD_FIXED_REFRACTION)) {
+    defines.push_back("REFRACT " + std::to_string(static_cast<int>(frame.refract)));
+    defines.push_back(literal("REFRACT_DISTANCE", frame.refract_distance));
+  }
+  if (has(PLD_FIXED_DIFFUSION)) {
+    defines.push_back(literal("DIFFUSION_K0", frame.diffusion_k0));
+    defines.push_back(literal("DIFFUSION_K1", frame.diffusion_k1));
+  }
+}
+
+}  // namespace
+
+bool isPerspective(const float* p) {
+  return p[3] == 0.0f && p[7] == 0.0f && p[11] == -1.0f && p[15] == 0.0f;
+}
+bool isOrthographic(const float* p) {
+  return p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
+}
 
 std::string conflictOf(const Permutation& p) {
   if (p.tier == PLD_TIER_EXACT)
@@ -73,7 +112,9 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
 }
 
 std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
-  std::vector<std::string> defines{"WEIGHT " + std::to_string(static_cast<int>(p.weight)), "NORMALISATION 0"};
+  std::vector<std::string> defines{"WEIGHT " + std::to_string(static_cast<int>(p.weight)), "NORMALISATION 0",
+                                   p.rows == PLD_ROWS_DOWN ? "ROWS 1.0f" : "ROWS (-1.0f)"};
+  defineFixed(p, defines);
   const auto define = [&](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
   };

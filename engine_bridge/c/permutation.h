@@ -13,6 +13,9 @@ struct Permutation {
   uint32_t features = 0;
   pld_weight weight = PLD_WEIGHT_BY_EQ5;
   pld_depth depth = PLD_DEPTH_DEVICE;
+  pld_rows rows = PLD_ROWS_UP;
+  uint32_t fixedFields = 0;  // pld_fixed: of the next, what every frame has
+  pld_frame fixed{};
 
   bool has(pld_feature feature) const { return (features & static_cast<uint32_t>(feature)) != 0; }
   bool scatters() const { return has(PLD_FEATURE_REFRACTION) || has(PLD_FEATURE_DIFFUSION); }
@@ -27,6 +30,10 @@ struct Permutation {
   // Whether planar depth is needed beside the host's.
   bool planarDepth() const { return rims() || low() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
 };
+
+// Whether pld_frame.projection, by columns, has clip w = -z; whether it has w = 1.
+bool isPerspective(const float* projection);
+bool isOrthographic(const float* projection);
 
 // Empty when the parts go together, else what does not: a sentence.
 std::string conflictOf(const Permutation& permutation);

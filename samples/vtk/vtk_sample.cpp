@@ -92,7 +92,8 @@ class PellucidPass : public vtkOpenGLRenderPass {
   void Render(const vtkRenderState* s) override {
     int size[2];
     s->GetWindowSize(size);
-    if (!pass_) create();
+    const bool isNew = !pass_;
+    if (isNew) create();
     check(pld_resize(pass_, size[0], size[1]));
     GLint frame = 0, colour = 0, depth = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &frame);
@@ -113,6 +114,8 @@ class PellucidPass : public vtkOpenGLRenderPass {
     host.weight_far = weightFar;
     host.weight_exponent = exponent;
     host.refract_distance = host.diffusion_k1 = 1.0f;
+    // Every frame has these: constants in the shaders.
+    if (isNew) check(pld_fix(pass_, &host, PLD_FIXED_UNITS | PLD_FIXED_EXPOSURE | PLD_FIXED_WEIGHT));
 
     this->NumberOfRenderedProps = 0;
     std::vector<pld_stage> stages;

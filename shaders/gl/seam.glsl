@@ -25,11 +25,34 @@ bool seamIsRim = false;
 #endif
 
 PLD_FRAME_LAYOUT uniform PldFrame {
-  vec4 pldWeight;      // range near, far in metres; exponent; metres per unit
-  vec4 pldPicture;     // pre-exposure; 1 where rows run down, -1 where up; not 0: orthographic; 1 + precision of depth
+  vec4 pldScale;       // metres per unit; pre-exposure; not 0: orthographic
+  vec4 pldWeight;      // range near, far in metres; exponent
   vec4 pldRefraction;  // PLD_REFRACT_*; metres (at a distance); focal length in x and y, pixels
   vec4 pldDiffusion;   // k0, k1 metres
 };
+// What pld_fix() fixed is a constant; the rest is read from the block.
+#ifndef UNITS
+#define UNITS pldScale.x
+#endif
+#ifndef EXPOSURE
+#define EXPOSURE pldScale.y
+#endif
+#ifndef ORTHOGRAPHIC
+#define ORTHOGRAPHIC (pldScale.z != 0.0f ? 1 : 0)
+#endif
+#ifndef EXPONENT
+#define RANGE_NEAR pldWeight.x
+#define RANGE_FAR pldWeight.y
+#define EXPONENT pldWeight.z
+#endif
+#ifndef REFRACT
+#define REFRACT int(pldRefraction.x)
+#define REFRACT_DISTANCE pldRefraction.y
+#endif
+#ifndef DIFFUSION_K0
+#define DIFFUSION_K0 pldDiffusion.x
+#define DIFFUSION_K1 pldDiffusion.y
+#endif
 PLD_UNIT_0 uniform sampler2D pldOpaqueZ;  // planar metres, +inf where nothing is
 PLD_UNIT_1 uniform sampler2D pldSolid;    // nearest fragment that hides everything: rgb, planar z
 PLD_UNIT_2 uniform sampler2D pldFrontZ;   // nearest layer, planar metres
@@ -65,9 +88,9 @@ PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 pos
 WeightSettings seamWeight() {
   WeightSettings settings;
   settings.kind = WEIGHT;
-  settings.rangeNear = pldWeight.x;
-  settings.rangeFar = pldWeight.y;
-  settings.exponent = pldWeight.z;
+  settings.rangeNear = RANGE_NEAR;
+  settings.rangeFar = RANGE_FAR;
+  settings.exponent = EXPONENT;
   return settings;
 }
 
@@ -80,7 +103,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (!(z > 0.0f)) discard;
 #ifdef DEPTH_IN_SHADER
-  if (z > texelFetch(pldOpaqueZ, pixel, 0).r * pldPicture.w) discard;
+  if (z > texelFetch(pldOpaqueZ, pixel, 0).r) discard;
 #endif
   Layer layer;
   layer.radiance = clamp(radiance, vec3(0.0f), vec3(1e20f));
@@ -102,7 +125,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   writeRim(layer, max(seamAround, vec3(0.0f)), seamGradient, seamWeight());
 #else
   Scatter scatter;
-  scatter.offset = vec2(offset.x, offset.y * pldPicture.y);
+  scatter.offset = vec2(offset.x, offset.y * ROWS);
   scatter.variance = variance;
 #if defined(PUBLISHED)
   writePublished(layer, scatter, seamWeight());
@@ -113,7 +136,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   writeSums(layer, seamWeight());
 #endif
 #ifdef SCATTER
-  writeScatter(layer, scatter, vec4(dispersion.x, dispersion.y * pldPicture.y, dispersion.z, dispersion.w * pldPicture.y));
+  writeScatter(layer, scatter, vec4(dispersion.x, dispersion.y * ROWS, dispersion.z, dispersion.w * ROWS));
 #endif
 #ifdef HALF
   clampToHalf();
@@ -136,20 +159,19 @@ float seamBackdropZ() {
 
 RefractionSettings seamRefraction() {
   RefractionSettings settings;
-  settings.mode = int(pldRefraction.x);
-  settings.distance = pldRefraction.y;
+  settings.mode = REFRACT;
+  settings.distance = REFRACT_DISTANCE;
   settings.focalX = pldRefraction.z;
   settings.focalY = pldRefraction.w;
-  settings.orthographic = pldPicture.z != 0.0f ? 1 : 0;
+  settings.orthographic = ORTHOGRAPHIC;
   return settings;
 }
 
 //   backdropZ  seamBackdropZ(), fetched once for all that ask
 vec2 seamOffset(PldSurface surface, float eta, float backdropZ) {
-  vec3 position = surface.position * pldWeight.w;
-  vec3 toEye = pldPicture.z != 0.0f ? vec3(0.0f, 0.0f, 1.0f) : normalize(-position);
-  return refractionOffset(seamRefraction(), position, toEye, surface.normal, eta, backdropZ,
-                          surface.thickness * pldWeight.w);
+  vec3 toEye = ORTHOGRAPHIC != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-surface.position);
+  return refractionOffset(seamRefraction(), surface.position * UNITS, toEye, surface.normal, eta, backdropZ,
+                          surface.thickness * UNITS);
 }
 #endif
 
@@ -157,12 +179,12 @@ void pldWriteFragment(PldSurface surface) {
   vec2 offset = vec2(0.0f);
   float variance = 0.0f;
   vec4 dispersion = vec4(0.0f);
-  float z = -surface.position.z * pldWeight.w;
+  float z = -surface.position.z * UNITS;
 #ifdef SCATTER
   float backdropZ = seamBackdropZ();
 #ifdef REFRACTS
   // Entering faces only: along the ray that has not been bent, back faces would reflect all.
-  if (gl_FrontFacing && surface.eta != 1.0f && pldRefraction.x != 0.0f) {
+  if (gl_FrontFacing && surface.eta != 1.0f && REFRACT != PLD_REFRACT_OFF) {
     vec2 green = seamOffset(surface, surface.eta, backdropZ);
     offset = recordedOffset(green);
 #ifdef DISPERSION
@@ -174,16 +196,16 @@ void pldWriteFragment(PldSurface surface) {
 #endif
 #ifdef DIFFUSES
   DiffusionSettings settings;
-  settings.k0 = pldDiffusion.x;
-  settings.k1 = pldDiffusion.y;
+  settings.k0 = DIFFUSION_K0;
+  settings.k1 = DIFFUSION_K1;
   settings.netCoverage = 0;
   settings.focalPixels = pldRefraction.z;
-  settings.orthographic = pldPicture.z != 0.0f ? 1 : 0;
+  settings.orthographic = ORTHOGRAPHIC;
   variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), clamp(surface.transmission, vec3(0.0f), vec3(1.0f)),
                            clamp(surface.collimation, 0.0f, 1.0f), z, backdropZ);
 #endif
 #endif
-  pldWriteLayer(surface.radiance * pldPicture.x, surface.coverage, surface.transmission, z, offset, variance, dispersion);
+  pldWriteLayer(surface.radiance * EXPOSURE, surface.coverage, surface.transmission, z, offset, variance, dispersion);
 }
 
 #ifdef RIMS
@@ -193,7 +215,7 @@ void pldWriteFragment(PldSurface surface) {
 //   gradient  pldCoverageGradient(), taken before any discard
 void pldWriteRim(PldSurface surface, vec3 around, vec2 gradient) {
 #ifdef STAGE_RIMS
-  seamAround = around * pldPicture.x;
+  seamAround = around * EXPOSURE;
   seamGradient = gradient;
   seamIsRim = true;
 #endif

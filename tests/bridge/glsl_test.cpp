@@ -77,6 +77,9 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
       info.depth = depth;
       pld_pass* pass = host.create(info);
       ASSERT_NE(pass, nullptr);
+      // Half of them with constants in place of the block's numbers.
+      const pld_frame frame = host.frame();
+      ASSERT_EQ(pld_fix(pass, &frame, depth == PLD_DEPTH_LINEAR ? 63u : 0u), PLD_OK) << pld_message(pass);
       for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW})
         for (const int version : {330, 400, 410, 420, 430, 440, 450, 460}) {
           const char* seam = nullptr;

@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define PLD_VERSION_MAJOR 0
-#define PLD_VERSION_MINOR 2 /* 0.2: shadow maps, rims, low resolution. A library takes hosts of every earlier minor version. */
+#define PLD_VERSION_MINOR 3 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
 
@@ -171,6 +171,16 @@ typedef struct pld_frame {
   int32_t low_factor; /* PLD_FEATURE_LOW_RESOLUTION: 2, 4 or 8 pixels a texel; width and height are multiples of it */
 } pld_frame;
 
+/* Fields of pld_frame that no frame changes. */
+typedef PLD_ENUM(pld_fixed) {
+  PLD_FIXED_UNITS = 1,       /* metres_per_unit */
+  PLD_FIXED_EXPOSURE = 2,    /* pre_exposure */
+  PLD_FIXED_WEIGHT = 4,      /* weight_near, weight_far, weight_exponent */
+  PLD_FIXED_REFRACTION = 8,  /* refract, refract_distance */
+  PLD_FIXED_DIFFUSION = 16,  /* diffusion_k0, diffusion_k1 */
+  PLD_FIXED_PROJECTION = 32  /* whether projection is perspective or orthographic; its numbers may change */
+} pld_fixed;
+
 typedef PLD_ENUM(pld_stage) {
   PLD_STAGE_SOLIDS = 0, /* with PLD_FEATURE_SOLIDS: the same geometry, the nearest fragment that hides everything */
   PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth */
@@ -270,9 +280,12 @@ typedef PLD_ENUM(pld_shadow_text) {
 /* The version of the library, as PLD_VERSION. */
 PLD_API uint32_t pld_version(void);
 
-/* Order of calls: create, resize, then frames of { begin, draws, end } for every stage, solids, front, layers, rims,
+/* Order of calls: create, fix if wanted, resize, then frames of { begin, draws, end } for every stage, solids, front, layers, rims,
    low, and resolve. resize and destroy lie between frames. A frame may be given up: pld_end(), then begin its first stage again. */
 PLD_API pld_status pld_create(const pld_create_info* info, pld_pass** pass);
+/* Before pld_glsl(): what `fields` (pld_fixed, or-ed) names of every frame is as in this one, of which nothing else is
+   read. The texts hold it as constants, which costs less than reading it; pld_begin() refuses a frame that has another. */
+PLD_API pld_status pld_fix(pld_pass* pass, const pld_frame* frame, uint32_t fields);
 /* Room for pictures up to width x height. Gives back what the last size took. */
 PLD_API pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height);
 /* Binds a framebuffer of this library and sets blending, masks, depth and viewport; the host then draws with programs
