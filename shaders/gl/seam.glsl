@@ -57,6 +57,11 @@ PLD_UNIT_0 uniform sampler2D pldOpaqueZ;  // planar metres, +inf where nothing i
 PLD_UNIT_1 uniform sampler2D pldSolid;    // nearest fragment that hides everything: rgb, planar z
 PLD_UNIT_2 uniform sampler2D pldFrontZ;   // nearest layer, planar metres
 
+// Under this fragment. A nearest lookup takes a rasteriser on a CPU less than a fetch, which asks for its level.
+vec4 seamTexel(sampler2D plane) {
+  return textureLod(plane, gl_FragCoord.xy / vec2(textureSize(plane, 0)), 0.0f);
+}
+
 // One shaded transparent surface under this fragment.
 struct PldSurface {
   vec3 radiance;       // premultiplied, scene-linear: coverage * reflected + emitted, >= 0
@@ -100,10 +105,9 @@ WeightSettings seamWeight() {
 //   dispersion  offset of red minus `offset`, of blue minus it
 void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, vec2 offset, float variance,
                    vec4 dispersion) {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (!(z > 0.0f)) discard;
 #ifdef DEPTH_IN_SHADER
-  if (z > texelFetch(pldOpaqueZ, pixel, 0).r) discard;
+  if (z > seamTexel(pldOpaqueZ).r) discard;
 #endif
   Layer layer;
   layer.radiance = clamp(radiance, vec3(0.0f), vec3(1e20f));
@@ -116,7 +120,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   gl_FragDepth = 1e-7f / z;
 #else
 #ifdef SOLIDS
-  if (isSolid(layer.coverage, layer.transmission) || z > texelFetch(pldSolid, pixel, 0).a) discard;
+  if (isSolid(layer.coverage, layer.transmission) || z > seamTexel(pldSolid).a) discard;
 #endif
 #if defined(STAGE_FRONT)
   frontZ = z;
@@ -131,7 +135,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   writePublished(layer, scatter, seamWeight());
 #else
 #ifdef FRONT_TAIL
-  writeFrontOrTail(layer, seamWeight(), isFront(z, texelFetch(pldFrontZ, pixel, 0).r));
+  writeFrontOrTail(layer, seamWeight(), isFront(z, seamTexel(pldFrontZ).r));
 #else
   writeSums(layer, seamWeight());
 #endif
@@ -149,10 +153,9 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
 #ifdef SCATTER
 // Depth of what stands behind all layers, planar metres.
 float seamBackdropZ() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  float z = texelFetch(pldOpaqueZ, pixel, 0).r;
+  float z = seamTexel(pldOpaqueZ).r;
 #ifdef SOLIDS
-  z = min(z, texelFetch(pldSolid, pixel, 0).a);
+  z = min(z, seamTexel(pldSolid).a);
 #endif
   return z;
 }
