@@ -114,7 +114,7 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
 
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
   return hostText("gl/seam.glsl", seamDefines(permutation, stage),
-                  {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
+                  {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "DIFFUSE_IN_ALPHA", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
                    "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
                    "ROWS", "UNITS", "EXPOSURE", "ORTHOGRAPHIC", "RANGE_NEAR", "RANGE_FAR", "EXPONENT", "REFRACT", "REFRACT_DISTANCE",
                    "DIFFUSION_K0", "DIFFUSION_K1"},

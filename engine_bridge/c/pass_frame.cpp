@@ -204,8 +204,8 @@ void pld_pass::blend(GLuint i, BlendKind kind) {
   gl.Enablei(GL_BLEND, i);
   const bool product = kind == BlendKind::product;
   gl.BlendFuncSeparatei(i, product ? GL_ZERO : GL_ONE, product ? GL_ONE_MINUS_SRC_COLOR : GL_ONE, GL_ONE, GL_ONE);
-  const GLenum equation = kind == BlendKind::minimum ? GL_MIN : GL_FUNC_ADD;
-  gl.BlendEquationSeparatei(i, equation, equation);
+  gl.BlendEquationSeparatei(i, kind == BlendKind::minimum ? GL_MIN : GL_FUNC_ADD,
+                            kind == BlendKind::minimum || kind == BlendKind::alphaMinimum ? GL_MIN : GL_FUNC_ADD);
 }
 
 void pld_pass::openStage(pld_stage stage) {

@@ -92,12 +92,15 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
     planes.push_back({2, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
   } else {
     sum(1, 2);
-    sum(2, 3);
+    if (p.diffuseInAlpha())
+      planes.push_back({2, four, bits, 3, BlendKind::alphaMinimum, {0, 0, 0, far}});
+    else
+      sum(2, 3);
     sum(3, 4);
   }
   if (p.light()) sum(4, 7);
   if (p.scatters()) {
-    planes.push_back({5, GL_RG32F, 64, 9, BlendKind::minimum, {far, far, 0, 0}});
+    if (!p.diffuseInAlpha()) planes.push_back({5, GL_RG32F, 64, 9, BlendKind::minimum, {far, far, 0, 0}});
     sum(6, 8);
   }
   if (p.has(PLD_FEATURE_DISPERSION)) sum(7, 10);
@@ -132,6 +135,7 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("HALF", p.tier == PLD_TIER_HALF && (layers || low));
   define("FRONT_TAIL", p.fronts() && layers);
   define("SCATTER", p.scatters() && layers);
+  define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha() && layers);
   define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && layers);
   define("DIFFUSES", p.has(PLD_FEATURE_DIFFUSION) && layers);
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && layers);
@@ -152,6 +156,7 @@ std::vector<std::string> resolveDefines(const Permutation& p) {
   define("HALF_SUMS", p.tier != PLD_TIER_FLOAT);
   define("FRONT_TAIL", p.fronts());
   define("SCATTER", p.scatters());
+  define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha());
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION));
   return defines;
 }

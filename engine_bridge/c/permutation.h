@@ -25,6 +25,8 @@ struct Permutation {
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters() || low()); }
   // No layer adds light: half of the sums are not needed.
   bool lean() const { return !published() && !light(); }
+  // The nearest layer that diffuses has a place beside a sum. Not in half floats: it is compared with depths.
+  bool diffuseInAlpha() const { return scatters() && !grey() && tier == PLD_TIER_FLOAT; }
   bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // Whether planar depth is needed beside the host's.
@@ -38,7 +40,8 @@ bool isOrthographic(const float* projection);
 // Empty when the parts go together, else what does not: a sentence.
 std::string conflictOf(const Permutation& permutation);
 
-enum class BlendKind { add, minimum, product };  // product: of rgb, ZERO, ONE_MINUS_SRC_COLOR; a adds
+// product: of rgb, ZERO, ONE_MINUS_SRC_COLOR; a adds. alphaMinimum: rgb adds
+enum class BlendKind { add, minimum, alphaMinimum, product };
 
 // One texture that layers are blended into.
 struct PlaneSpec {

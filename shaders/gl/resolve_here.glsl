@@ -127,7 +127,12 @@ VeilHere veilAt(ivec2 pixel) {
 #ifdef PUBLISHED
   vec2 depths = vec2(0.0f);  // no depth says what stands in front
 #else
-  vec2 depths = vec2(texelFetch(lightSum, pixel, 0).a, texelFetch(nearestZ, pixel, 0).g);
+#ifdef DIFFUSE_IN_ALPHA
+  float diffuseZ = texelFetch(opacitySum, pixel, 0).a;
+#else
+  float diffuseZ = texelFetch(nearestZ, pixel, 0).g;
+#endif
+  vec2 depths = vec2(texelFetch(lightSum, pixel, 0).a, diffuseZ);
 #endif
   vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel);
   precise vec3 shown = veil.resolved.transmission * throughOnly(veil.resolved.transmission, vec3(seen));

@@ -1,6 +1,7 @@
 #pragma once
 // Adds one layer to the planes by fixed-function blending: all targets ONE, ONE but target 5, MIN. GREY: the layout of
-// scenes without coloured transmission.
+// scenes without coloured transmission. DIFFUSE_IN_ALPHA: no target 5; the nearest layer that diffuses is the alpha of
+// target 2, MIN, in place of what nobody reads then.
 #include "shared/refraction.glsl"
 
 layout(location = 0) out vec4 radianceSum;
@@ -14,7 +15,9 @@ layout(location = 3) out vec4 depthSum;
 #endif
 layout(location = 4) out vec4 lightSum;
 #ifdef SCATTER
+#ifndef DIFFUSE_IN_ALPHA
 layout(location = 5) out vec2 nearestZ;  // of all layers, of those that diffuse
+#endif
 layout(location = 6) out vec4 refractionSum;
 #else
 layout(location = 5) out float nearestZ;
@@ -36,10 +39,10 @@ void writeOitSums(OitSums sums, float z) {
   radianceSum = targets.radiance;
   opacitySum = targets.opacity;
   depthSum = targets.depth;
-#ifdef SCATTER
-  nearestZ.x = z;
-#else
+#ifndef SCATTER
   nearestZ = z;
+#elif !defined(DIFFUSE_IN_ALPHA)
+  nearestZ.x = z;
 #endif
 }
 
@@ -48,13 +51,23 @@ void writeSums(Layer layer, WeightSettings settings) {
 }
 
 #ifdef SCATTER
+// After writeOitSums().
+//   z  of a layer that diffuses, else +inf
+void writeDiffuseZ(float z) {
+#ifdef DIFFUSE_IN_ALPHA
+  opacitySum.a = z;
+#else
+  nearestZ.y = z;
+#endif
+}
+
 // After writeSums().
 //   dispersion  see packDispersion()
 void writeScatter(Layer layer, Scatter scatter, vec4 dispersion) {
   ScatterTargets targets = packScatter(layer, scatter);
   refractionSum = targets.refraction;
   lightSum.a = targets.refractionZ;
-  nearestZ.y = targets.diffuseZ;
+  writeDiffuseZ(targets.diffuseZ);
 #ifdef DISPERSION
   dispersionSum = packDispersion(layer, scatter, dispersion);
 #endif

@@ -57,7 +57,7 @@ void main() {
   if (!layer.shows) discard;
   writeOitSums(lowLayerSums(layer, NORMALISATION), sums.nearestZ);
 #ifdef SCATTER
-  nearestZ.y = intBitsToFloat(0x7f800000);
+  writeDiffuseZ(intBitsToFloat(0x7f800000));
   refractionSum = vec4(0.0f);
 #endif
 #ifdef DISPERSION
