@@ -1,11 +1,13 @@
 // What exactness costs as a user runs it: sixteen panes that each cover 1920 x 1080, through `composite` by the truth, by
 // the weighted sums, and by sums whose weight is fitted to the truth. Medians of the stages between reading and writing.
 //   bench_paths [LAYERS]
+//   bench_paths shots PELLUCID_SAMPLES    each sample at 640 x 360 by the default method and by the truth
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
 
 #include "tests/support/program.h"
 #include "tests/support/shots.h"
@@ -37,12 +39,10 @@ std::string makeShot(int layers) {
   return folder;
 }
 
-double medianSeconds(const std::string& folder, const std::vector<std::string>& flags) {
+double medianSeconds(const std::string& opaque, const std::string& scene, const std::vector<std::string>& flags) {
   std::vector<double> runs;
   for (int run = 0; run < kRuns; ++run) {
-    std::vector<std::string> arguments = {"composite",          folder + "/wall.exr", folder + "/panes.glb", "-o",
-                                          folder + "/out.exr", "--aa",               "1",                   "--stats",
-                                          "--json"};
+    std::vector<std::string> arguments = {"composite", opaque, scene, "-o", opaque + ".out.exr", "--stats", "--json"};
     arguments.insert(arguments.end(), flags.begin(), flags.end());
     const Ended ended = runProgram(arguments);
     require(ended);
@@ -57,26 +57,52 @@ double medianSeconds(const std::string& folder, const std::vector<std::string>& 
   return runs[kRuns / 2];
 }
 
+void panes(int layers) {
+  const std::string folder = makeShot(layers);
+  double weighted = 0;
+  const std::pair<const char*, std::vector<std::string>> paths[] = {
+      {"weighted", {"--method", "weighted"}},
+      {"weighted, fitted weight", {"--method", "weighted", "--weight", "auto"}},
+      {"over", {"--method", "over"}},
+      {"front+tail", {"--method", "front+tail"}},
+      {"exact sums", {"--precision", "exact"}}};
+  for (auto [name, flags] : paths) {
+    flags.insert(flags.end(), {"--aa", "1"});
+    const double seconds = medianSeconds(folder + "/wall.exr", folder + "/panes.glb", flags);
+    if (weighted == 0) weighted = seconds;
+    std::printf("%-24s %d layers, 1920 x 1080: %6.2f s, %.2f times weighted\n", name, layers, seconds, seconds / weighted);
+  }
+}
+
+void shots(const std::string& generator) {
+  const std::string folder = freshFolder("bench_paths");
+  std::vector<double> ratios;
+  for (const char* name : {"ball", "bars", "bottles", "cad", "chess", "clouds", "foliage", "frosted", "mixed", "smoke",
+                           "street"}) {
+    if (std::system((generator + " " + folder + " " + name + " > " + folder + "/log").c_str()) != 0)
+      throw std::runtime_error(std::string(name) + " could not be made");
+    const std::string opaque = folder + "/" + name + ".exr", scene = folder + "/" + name + ".glb";
+    const double sums = medianSeconds(opaque, scene, {}), over = medianSeconds(opaque, scene, {"--method", "over"});
+    ratios.push_back(over / sums);
+    std::printf("%-10s default %.2f s, over %.2f s: %.2f times\n", name, sums, over, ratios.back());
+    std::fflush(stdout);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  std::printf("over / default: %.2f to %.2f, median %.2f\n", ratios.front(), ratios.back(), ratios[ratios.size() / 2]);
+}
+
 }  // namespace
 }  // namespace pellucid
 
 int main(int count, char** arguments) {
   try {
-    const int layers = count > 1 ? std::atoi(arguments[1]) : 16;
-    if (layers < 1) throw std::runtime_error("expected a number of layers");
-    const std::string folder = pellucid::makeShot(layers);
-    double weighted = 0;
-    const std::pair<const char*, std::vector<std::string>> paths[] = {
-        {"weighted", {"--method", "weighted"}},
-        {"weighted, fitted weight", {"--method", "weighted", "--weight", "auto"}},
-        {"over", {"--method", "over"}},
-        {"front+tail", {"--method", "front+tail"}},
-        {"exact sums", {"--precision", "exact"}}};
-    for (const auto& [name, flags] : paths) {
-      const double seconds = pellucid::medianSeconds(folder, flags);
-      if (weighted == 0) weighted = seconds;
-      std::printf("%-24s %d layers, 1920 x 1080: %6.2f s, %.2f times weighted\n", name, layers, seconds, seconds / weighted);
+    if (count == 3 && std::string(arguments[1]) == "shots") {
+      pellucid::shots(arguments[2]);
+      return 0;
     }
+    const int layers = count > 1 ? std::atoi(arguments[1]) : 16;
+    if (layers < 1) throw std::runtime_error("expected a number of layers, or `shots` and the program that makes them");
+    pellucid::panes(layers);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_paths: %s\n", error.what());

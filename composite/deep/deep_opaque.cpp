@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "composite/deep/tidy.h"
 #include "gbuffer/deep_io.h"
@@ -33,8 +34,9 @@ DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit) {
   opaque.farthest = Image<float>(width, height, kNothing);
   opaque.offsets.assign(1, 0);
   std::vector<DeepSample> pixel;
+  DeepRows rows;
   for (int y = opaque.data.y0; y < opaque.data.y1;) {
-    const DeepRows rows = reader.read(y, opaque.data.y1, kMostAtOnce);
+    rows = reader.read(y, opaque.data.y1, kMostAtOnce, std::move(rows));
     for (std::size_t i = 0; i + 1 < rows.offsets.size(); ++i) {
       pixel.clear();
       for (std::uint64_t k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {

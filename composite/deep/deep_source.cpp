@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "gbuffer/errors.h"
 #include "shaders/shading.h"
@@ -69,13 +70,14 @@ class DeepMerge {
   // Reads rows from y on and merges them. Returns the row to go on from.
   int band(int y, std::uint64_t most, FragmentLists& merged) {
     int end = lists_.window.y1;
-    rows_.clear();
-    for (const auto& source : sources_) {
-      const Window& data = source->reader_.data();
+    rows_.resize(sources_.size());
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      DeepReader& reader = sources_[s]->reader_;
+      const Window& data = reader.data();
       const int from = std::max(y, data.y0), to = std::min(end, data.y1);
-      rows_.push_back(from < to ? source->reader_.read(from, to, most) : DeepRows{});
+      rows_[s] = from < to ? reader.read(from, to, most, std::move(rows_[s])) : DeepRows{};
       // Later sources follow the first that had to stop early.
-      if (from < to) end = std::min(end, rows_.back().window.y1);
+      if (from < to) end = std::min(end, rows_[s].window.y1);
     }
     merged.window = {lists_.window.x0, y, lists_.window.x1, end};
     merged.solid = Image<glm::vec4>(merged.window.width(), merged.window.height());

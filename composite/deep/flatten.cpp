@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <numeric>
+#include <utility>
 
 #include "composite/depth_order.h"
 #include "gbuffer/errors.h"
