@@ -70,7 +70,7 @@ void interleave(const char* from, std::uint64_t size, char* to) {
 bool unpack(bool zips, const char* from, std::uint64_t packed, std::uint64_t size, Inflater& inflater) {
   inflater.plain.resize(size);
   if (packed == size) {
-    std::memcpy(inflater.plain.data(), from, size);
+    if (size > 0) std::memcpy(inflater.plain.data(), from, size);
     return true;
   }
   if (!zips || packed > size || !inflater.deflate) return false;
@@ -86,6 +86,7 @@ bool unpack(bool zips, const char* from, std::uint64_t packed, std::uint64_t siz
 }
 
 void toFloats(PixelType type, const char* from, std::uint64_t count, float* to) {
+  if (count == 0) return;
   if (type == PixelType::float32) {
     std::memcpy(to, from, count * sizeof(float));
   } else if (type == PixelType::half) {
