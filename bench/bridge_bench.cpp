@@ -292,6 +292,7 @@ const Kind kKinds[] = {
     {"lit, half, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter | kSolids, kFixed, 0},
     {"lit, published, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, kScatter | kSolids, kFixed, 0},
     {"lit, float, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, kFixed, 1.3},
+    {"lit, float, full model, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, kFixed | PLD_FIXED_EXPOSURE, 1.3},
     {"lit, float, full model, nothing fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, 0, 0},
     {"lit, float, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
     {"lit, float, diffusion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_DIFFUSION, kFixed, 0},
@@ -302,6 +303,7 @@ const Kind kKinds[] = {
     {"unlit, float, coloured", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured, kFixed, 3},
     {"unlit, float, coloured, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, kFixed, 3},
     {"unlit, half, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, kFixed, 0},
+    {"unlit, half, grey, all fixed", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, kFixed | PLD_FIXED_EXPOSURE, 0},
     {"unlit, published", false, PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, 0, kFixed, 0},
     {"unlit, float, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0, kFixed, 0}};
 
