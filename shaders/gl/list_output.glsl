@@ -1,6 +1,6 @@
 #pragma once
-// Appends a fragment to its pixel's list: every pixel of the band owns a range that a first pass has counted. Records are
-// those of gbuffer/fragments.h, as pairs of words: LeanFragment where LEAN, else Fragment.
+// Appends a fragment to its pixel's list, at the pixel's cursor: the places that it owns are counted before or checked after.
+// Records are pairs of words: LeanFragment of gbuffer/lean_lists.h where LEAN, else Fragment of gbuffer/fragments.h.
 #include "gl/frame.glsl"
 #include "gl/identity.glsl"
 #include "shared/refraction.glsl"

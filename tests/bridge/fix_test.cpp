@@ -96,12 +96,7 @@ std::vector<float> drawn(const Case& one, uint32_t fixed) {
     glDeleteVertexArrays(1, &array);
     glDeleteProgram(program);
   }
-  const pld_target target = host.target();
-  EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
-  const std::vector<float> picture = host.picture();
-  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
-  return picture;
+  return host.finish(pass);
 }
 
 std::size_t differing(const std::vector<float>& a, const std::vector<float>& b) {

@@ -157,6 +157,14 @@ std::vector<float> Host::picture() const {
   return readTexture(output, width, height, GL_RGBA);
 }
 
+std::vector<float> Host::finish(pld_pass* pass) {
+  const pld_target to = target();
+  EXPECT_EQ(pld_resolve(pass, &to), PLD_OK) << pld_message(pass);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+  return picture();
+}
+
 void replay(pld_pass* pass, const FragmentLists& lists, const pld_frame& frame, const std::vector<pld_stage>& stages) {
   static const std::string kMain = R"(
 struct FragmentRecord { vec3 radiance; float coverage; vec3 transmission; float z; vec2 offset; float variance; uint identity; };

@@ -43,6 +43,7 @@ class Host {
   pld_pass* create(const pld_create_info& info);
   void upload(const GBuffer& gbuffer);  // colour and depth
   std::vector<float> picture() const;   // of the target
+  std::vector<float> finish(pld_pass* pass);  // resolves, destroys the pass, and gives the picture
 
   int width, height;
   GLuint colour, depth, output, occlusion;

@@ -108,12 +108,7 @@ std::vector<float> bridged(const Shot& shot, const Wanted& wanted, pld_tier tier
   if (method == PLD_METHOD_FRONT_TAIL) stages.push_back(PLD_STAGE_FRONT);
   stages.push_back(PLD_STAGE_LAYERS);
   replay(pass, shot.lists, host.frame(), stages);
-  const pld_target target = host.target();
-  EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
-  const std::vector<float> picture = host.picture();
-  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
-  return picture;
+  return host.finish(pass);
 }
 
 struct Difference {

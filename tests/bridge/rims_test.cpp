@@ -123,11 +123,7 @@ std::vector<float> bridged(const Leaves& leaves, uint32_t features, pld_occlusio
     EXPECT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
     glDeleteProgram(program);
   }
-  const pld_target target = host.target();
-  EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
-  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-  pld_destroy(&pass);
-  return host.picture();
+  return host.finish(pass);
 }
 
 TEST(BridgeRims, OcclusionAtRimsIsThatOfTheRooms) {
