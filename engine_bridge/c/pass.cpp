@@ -40,7 +40,8 @@ uint32_t pld_pass::stagesNeeded() const {
 }
 
 Units pld_pass::unitsOf() const {
-  return {0, permutation_.scatters() ? 16 : 11};
+  const bool views = permutation_.rims() && (info_.flags & PLD_FLAG_DEBUG_VIEWS);
+  return {0, permutation_.scatters() || views ? 16 : 11};
 }
 
 void pld_pass::pushGroup(const char* name) {
@@ -66,10 +67,10 @@ pld_status pld_pass::makePrograms() {
   const std::vector<std::string> defines = resolveDefines(permutation_);
   build(picture_, "gl/picture.frag", defines);
   if (permutation_.planarDepth()) build(planarDepth_, "gl/planar_depth.frag", {});
-  if (info_.flags & PLD_FLAG_DEBUG_VIEWS) build(view_, "gl/view.frag", defines);
   if (permutation_.has(PLD_FEATURE_DIFFUSION)) build(spreadLevel_, "gl/spread_level.frag", defines);
   if (permutation_.rims()) build(rimsApply_, "gl/rims_apply.frag", defines);
   if (permutation_.low() && failure.empty()) failure = buildLowPrograms();
+  if (failure.empty()) failure = buildViewPrograms();
   return failure.empty() ? PLD_OK : fail(PLD_ERROR_INTERNAL, "%s", failure.c_str());
 }
 
@@ -144,7 +145,8 @@ void pld_pass::destroyObjects() {
   releaseTextures();
   releaseShadows();
   timers_.destroy(gl);
-  for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_, &lowTexel_, &upsample_}) program->destroy(gl);
+  for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_, &lowTexel_, &upsample_, &viewRims_, &viewLow_})
+    program->destroy(gl);
   for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
                         &lowDepthFrame_, &lowTexelFrame_, &targetFrame_})
     if (*frame) gl.DeleteFramebuffers(1, frame);

@@ -36,6 +36,8 @@ struct pld_pass {
 
  private:
   static constexpr int kLevels = 25, kSpreadPlanes = 5, kStages = 5, kRimPlanes = 3, kLowTexels = 3;
+  static constexpr int kMostFaces = 96;
+  enum class FaceKind : uint8_t { empty, directional, local };  // of a shadow map, as it was drawn
   enum class Step { sizeless, between, open, drawn };  // of a frame; drawn: a stage ended, no resolve yet
 
   struct Plane {
@@ -71,6 +73,18 @@ struct pld_pass {
   bool makeLowTextures(int width, int height);
   void drawLowDepth(const pld_frame& frame);
   void addLow();
+  static bool isOfShadows(pld_view view);
+  static bool isOfRims(pld_view view);
+  static bool isOfLow(pld_view view);
+  static bool isOfParts(pld_view view);  // of rims or of layers of low resolution
+  std::string buildViewPrograms();
+  pld_status checkView(const pld_target& target);
+  pld_status checkTarget(const pld_target& target, int width, int height, GLuint source);
+  GLuint targetFrame(const pld_target& target) const;
+  pld_status bindTarget(const pld_target& target, GLuint source);
+  void unbindTarget(const pld_target& target);
+  void drawPart(pld_view view);
+  pld_status resolveShadow(const pld_target& target);
   void bind(GLuint unit, GLuint texture);
   void useProgram(const pellucid::c::Program& program);
   GLuint makeTexture(GLenum format, int width, int height, int bits);
@@ -88,7 +102,7 @@ struct pld_pass {
   pellucid::c::Permutation permutation_;
   pellucid::c::SavedState saved_;
   pellucid::c::Timers timers_;
-  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_, upsample_;
+  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_, upsample_, viewRims_, viewLow_;
   GLuint vertexArray_ = 0, sampler_ = 0, uniforms_ = 0;
   GLuint lowFrame_ = 0, lowDepthFrame_ = 0, lowTexelFrame_ = 0, rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
   std::vector<Plane> planes_, low_;  // of the layers, of those of low resolution
@@ -102,11 +116,12 @@ struct pld_pass {
 
   // Shadow maps: as drawn, between the two filters, and as they are looked up.
   pld_shadow_info shadowInfo_{};
-  pellucid::c::Program shadowTexels_, shadowDown_;
+  pellucid::c::Program shadowTexels_, shadowDown_, viewShadow_;
   GLuint shadowDrawn_[2] = {}, shadowAcross_[3] = {}, shadowMaps_ = 0, shadowTable_ = 0, shadowUniforms_ = 0;
   GLuint casterFrame_ = 0, acrossFrame_ = 0, mapFrame_ = 0;
   uint64_t shadowBytes_ = 0;
   bool shadowOpen_ = false;
+  FaceKind shadowFaces_[kMostFaces] = {};
   pld_shadow_view shadowView_{};
   double shadowRows_ = 1.0;  // -1: NDC's y runs against the rows
   GLenum shadowDepthAttachment_ = 0;

@@ -351,52 +351,20 @@ void pld_pass::drawPyramid() {
 
 pld_status pld_pass::resolve(const pld_target& target) {
   if (shadowOpen_) return fail(PLD_ERROR_ORDER, "pld_resolve: between pld_shadow_begin and pld_shadow_end");
+  if (isOfShadows(target.view)) return resolveShadow(target);
   if (step_ != Step::drawn || stagesDone_ != stagesNeeded())
     return fail(PLD_ERROR_ORDER, "pld_resolve: before all stages of a frame have met their pld_end");
-  if (target.struct_size != sizeof(pld_target))
-    return fail(PLD_ERROR_VERSION, "pld_resolve: target.struct_size: found %u, expected %zu", target.struct_size, sizeof(pld_target));
-  if (target.view < PLD_VIEW_PICTURE || target.view > PLD_VIEW_SOLID)
-    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found view %d, which pld_view does not have", static_cast<int>(target.view));
-  if (target.view != PLD_VIEW_PICTURE && !view_.name)
-    return fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: views need PLD_FLAG_DEBUG_VIEWS");
-  TextureFacts colour, facts;
+  if (const pld_status status = checkView(target); status != PLD_OK) return status;
+  TextureFacts colour;
   if (!factsOf(gl, frame_.colour_texture, colour) || colour.width < frame_.width || colour.height < frame_.height)
     return fail(PLD_ERROR_TEXTURE, "pld_resolve: colour_texture %u is no longer what pld_begin saw", frame_.colour_texture);
-  const bool toTexture = target.kind == PLD_TARGET_TEXTURE;
-  if (!toTexture && target.kind != PLD_TARGET_FRAMEBUFFER)
-    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found kind %d, which pld_target_kind does not have", static_cast<int>(target.kind));
-  if (toTexture) {
-    if (!factsOf(gl, target.name, facts))
-      return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is no 2D texture of this context", target.name);
-    if (target.name == frame_.colour_texture)
-      return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is the frame's colour_texture, which is read meanwhile", target.name);
-    for (const Plane& plane : planes_)
-      if (plane.texture == target.name) return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is a plane of this pass", target.name);
-    if (!isColour(facts.format))
-      return fail(PLD_ERROR_FORMAT, "pld_resolve: target has format 0x%x, expected RGB or RGBA", static_cast<unsigned>(facts.format));
-    if (facts.width < frame_.width || facts.height < frame_.height)
-      return fail(PLD_ERROR_SIZE, "pld_resolve: target is %dx%d, expected at least the frame's %dx%d", facts.width,
-                  facts.height, frame_.width, frame_.height);
-  } else if (target.name != 0 && !gl.IsFramebuffer(target.name)) {
-    return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is no framebuffer of this context", target.name);
-  }
+  if (const pld_status status = checkTarget(target, frame_.width, frame_.height, frame_.colour_texture); status != PLD_OK) return status;
 
   const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
   if (saves) saved_.save(gl, unitsOf(), -1);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, toTexture ? targetFrame_ : target.name);
-  if (toTexture) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name, 0);
-  GLint attached = 0, kind = 0;
-  if (!toTexture && target.name != 0) {
-    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
-    if (kind == GL_TEXTURE)
-      gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &attached);
-  }
-  const bool own = attached != 0 && static_cast<GLuint>(attached) == frame_.colour_texture;
-  if (own || gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    if (toTexture) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+  if (const pld_status status = bindTarget(target, frame_.colour_texture); status != PLD_OK) {
     if (saves) saved_.restore(gl);
-    return own ? fail(PLD_ERROR_TEXTURE, "pld_resolve: framebuffer %u draws to the frame's colour_texture, which is read meanwhile", target.name)
-               : fail(PLD_ERROR_FORMAT, "pld_resolve: this device cannot draw to target %u", target.name);
+    return status;
   }
   pushGroup("pellucid resolve");
   timers_.mark(gl, Timers::kResolve);
@@ -406,24 +374,28 @@ pld_status pld_pass::resolve(const pld_target& target) {
   for (const Plane& plane : planes_) bind(plane.spec.unit, plane.texture);
   if (planarZ_) bind(5, planarZ_);
   if (solid_) bind(6, solid_);
-  if (levelCount_ > 0) {
+  if (levelCount_ > 0 && !isOfParts(target.view)) {
     for (GLuint i = 0; i < kSpreadPlanes; ++i) bind(11 + i, spread_[i]);
     for (GLuint i = 1; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     drawPyramid();
     setPlainDrawing(gl, frame_.width, frame_.height);
     for (GLuint i = 1; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, toTexture ? targetFrame_ : target.name);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targetFrame(target));
   }
-  const Program& program = target.view == PLD_VIEW_PICTURE ? picture_ : view_;
-  useProgram(program);
-  gl.Uniform2i(program.place(gl, "pictureSize"), frame_.width, frame_.height);
-  gl.Uniform1i(program.place(gl, "view"), static_cast<GLint>(target.view));
-  gl.Uniform3i(program.place(gl, "lookup"), 0, 0, levelCount_);
-  gl.Uniform1f(program.place(gl, "largestSpread"),
-               std::hypot(static_cast<float>(frame_.width), static_cast<float>(frame_.height)));
-  if (levelCount_ > 0) gl.Uniform4iv(program.place(gl, "spreadLevels"), kLevels, &levels_[0][0]);
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
-  if (toTexture) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+  if (isOfParts(target.view)) {
+    drawPart(target.view);
+  } else {
+    const Program& program = target.view == PLD_VIEW_PICTURE ? picture_ : view_;
+    useProgram(program);
+    gl.Uniform2i(program.place(gl, "pictureSize"), frame_.width, frame_.height);
+    gl.Uniform1i(program.place(gl, "view"), static_cast<GLint>(target.view));
+    gl.Uniform3i(program.place(gl, "lookup"), 0, 0, levelCount_);
+    gl.Uniform1f(program.place(gl, "largestSpread"),
+                 std::hypot(static_cast<float>(frame_.width), static_cast<float>(frame_.height)));
+    if (levelCount_ > 0) gl.Uniform4iv(program.place(gl, "spreadLevels"), kLevels, &levels_[0][0]);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  unbindTarget(target);
   if (saves) saved_.restore(gl);
   popGroup();
   timers_.mark(gl, Timers::kResolved);

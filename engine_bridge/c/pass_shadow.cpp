@@ -13,7 +13,7 @@ namespace shading = pellucid::shading;
 
 namespace {
 
-constexpr int kMostLights = 16, kMostFaces = 96, kMostCloser = 16;
+constexpr int kMostLights = 16, kMostCloser = 16;
 constexpr float kRigid = 1e-3f;  // that a turn may be off
 
 bool isFinite(const float* matrix) {
@@ -112,6 +112,8 @@ void pld_pass::releaseShadows() {
   }
   shadowTexels_.destroy(gl);
   shadowDown_.destroy(gl);
+  viewShadow_.destroy(gl);
+  std::fill(std::begin(shadowFaces_), std::end(shadowFaces_), FaceKind::empty);
   shadowBytes_ = 0;
   shadowInfo_ = {};
 }
@@ -127,6 +129,7 @@ pld_status pld_pass::makeShadows() {
   };
   std::string failure = build(shadowTexels_, shadowIsFiltered() ? "FILTER 1" : "FILTER 0");
   if (failure.empty() && shadowIsFiltered()) failure = build(shadowDown_, "FILTER 2");
+  if (failure.empty() && (info_.flags & PLD_FLAG_DEBUG_VIEWS)) failure = viewShadow_.build(gl, "gl/view_shadow.frag", {});
   if (!failure.empty()) return fail(PLD_ERROR_INTERNAL, "%s", failure.c_str());
 
   const uint64_t before = bytes_;
@@ -368,6 +371,7 @@ pld_status pld_pass::shadowEnd() {
   }
   filterShadow(shadowView_.first_face + shadowView_.face);
   setShadowTable(shadowView_);
+  shadowFaces_[shadowView_.first_face + shadowView_.face] = shadowView_.kind == PLD_LIGHT_LOCAL ? FaceKind::local : FaceKind::directional;
   timers_.endFace(gl);
   if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
   popGroup();

@@ -72,6 +72,14 @@ pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, 
   return PLD_OK;
 }
 
+// Of 0.3 it ended before shadow_face.
+pld_status wholeTarget(pld_pass* pass, const pld_target& target, pld_target& whole) {
+  if (target.struct_size != offsetof(pld_target, shadow_face) && target.struct_size != sizeof(pld_target))
+    return pass->fail(PLD_ERROR_VERSION, "pld_resolve: target.struct_size: found %u, expected %zu", target.struct_size, sizeof(pld_target));
+  std::memcpy(&whole, &target, target.struct_size);
+  return PLD_OK;
+}
+
 }  // namespace
 
 extern "C" {
@@ -134,7 +142,10 @@ pld_status pld_end(pld_pass* pass) {
 
 pld_status pld_resolve(pld_pass* pass, const pld_target* target) {
   return guarded(pass, "pld_resolve", [&] {
-    return target ? pass->resolve(*target) : pass->fail(PLD_ERROR_ARGUMENT, "pld_resolve: target is null");
+    if (!target) return pass->fail(PLD_ERROR_ARGUMENT, "pld_resolve: target is null");
+    pld_target whole{};
+    const pld_status status = wholeTarget(pass, *target, whole);
+    return status == PLD_OK ? pass->resolve(whole) : status;
   });
 }
 

@@ -130,11 +130,12 @@ TEST(BridgeState, EveryCallLeavesGlAsItFoundIt) {
     target = host.target();
     EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
     watch.unchanged("pld_resolve");
-    for (int view = PLD_VIEW_LAYER_COUNT; view <= PLD_VIEW_SOLID; ++view) {
+    for (int view = PLD_VIEW_LAYER_COUNT; view <= PLD_VIEW_LOW_DEPTH; ++view) {
       target.view = static_cast<pld_view>(view);
-      EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
+      const uint32_t needed = view <= PLD_VIEW_SOLID ? 0u : view <= PLD_VIEW_RIM_LOSS ? uint32_t{PLD_FEATURE_RIMS} : uint32_t{PLD_FEATURE_LOW_RESOLUTION};
+      EXPECT_EQ(pld_resolve(pass, &target), (setup.features & needed) == needed ? PLD_OK : PLD_ERROR_UNSUPPORTED) << pld_message(pass);
+      watch.unchanged("pld_resolve of a view");
     }
-    watch.unchanged("pld_resolve of views");
     glFinish();
     uint64_t value = 0;
     EXPECT_EQ(pld_query(pass, PLD_VALUE_NS_RESOLVE, &value), PLD_OK) << pld_message(pass);
@@ -161,8 +162,14 @@ TEST(BridgeState, ShadowCallsLeaveGlAsTheyFoundIt) {
   for (const bool coloured : {false, true}) {
     GlContext context;
     Host host(40, 30);
-    const GLuint device = makeTexture(GL_DEPTH24_STENCIL8, 64, 64), small = makeTexture(GL_DEPTH_COMPONENT32F, 32, 64);
+    const GLuint device = makeTexture(GL_DEPTH24_STENCIL8, 64, 64), small = makeTexture(GL_DEPTH_COMPONENT32F, 32, 64),
+                 face = makeTexture(GL_RGBA8, 64, 64);
     setUnlikelyState();
+    GLuint array = 0;
+    glGenTextures(1, &array);
+    glActiveTexture(GL_TEXTURE0);  // where views of maps are looked up
+    glBindTexture(GL_TEXTURE_2D_ARRAY, array);
+    glActiveTexture(GL_TEXTURE5);
     pld_create_info create = host.info();
     create.flags = kFlags;
     pld_pass* pass = host.create(create);
@@ -202,6 +209,21 @@ TEST(BridgeState, ShadowCallsLeaveGlAsTheyFoundIt) {
     EXPECT_EQ(pld_query(pass, PLD_VALUE_NS_SHADOW, &time), PLD_OK) << pld_message(pass);
     EXPECT_GT(time, 0u);
     watch.unchanged("pld_query of a face's time");
+    GLuint bare = 0;
+    glCreateFramebuffers(1, &bare);
+    for (int shown = PLD_VIEW_SHADOW_TRANSMISSION; shown <= PLD_VIEW_SHADOW_DEPTH; ++shown) {
+      pld_target target = host.target();
+      target.name = face;
+      target.view = static_cast<pld_view>(shown);
+      EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
+      watch.unchanged("pld_resolve of a shadow map");
+      target.kind = PLD_TARGET_FRAMEBUFFER;
+      target.name = bare;
+      EXPECT_EQ(pld_resolve(pass, &target), PLD_ERROR_FORMAT);
+      target.shadow_face = 1;
+      EXPECT_EQ(pld_resolve(pass, &target), PLD_ERROR_ORDER);
+      watch.unchanged("pld_resolve of a shadow map that fails");
+    }
     const char* lookup = nullptr;
     EXPECT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_LOOKUP, 330, &lookup), PLD_OK);
     const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + lookup +

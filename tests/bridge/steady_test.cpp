@@ -134,8 +134,9 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     calls.clear();
     allocations = 0;
     const pld_target target = host.target();
-    pld_target view = target;
-    view.view = PLD_VIEW_WEIGHT;
+    std::vector<pld_view> views{PLD_VIEW_WEIGHT, PLD_VIEW_SHADOW_TRANSMISSION, PLD_VIEW_SHADOW_DEPTH};
+    if (kind.features & PLD_FEATURE_RIMS) views.push_back(PLD_VIEW_RIM_LOSS);
+    if (kind.features & PLD_FEATURE_LOW_RESOLUTION) views.push_back(PLD_VIEW_LOW_COLOUR);
     uint64_t value = 0;
     for (int number = 0; number < 20; ++number) {
       pld_frame frame = host.frame();
@@ -149,7 +150,11 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
         ASSERT_EQ(inside([&] { return pld_end(pass); }), PLD_OK);
       }
       ASSERT_EQ(inside([&] { return pld_resolve(pass, &target); }), PLD_OK) << pld_message(pass);
-      ASSERT_EQ(inside([&] { return pld_resolve(pass, &view); }), PLD_OK) << pld_message(pass);
+      for (const pld_view one : views) {
+        pld_target view = target;
+        view.view = one;
+        ASSERT_EQ(inside([&] { return pld_resolve(pass, &view); }), PLD_OK) << pld_message(pass);
+      }
       inside([&] { return pld_query(pass, PLD_VALUE_NS_RESOLVE, &value); });
       frame.depth_texture = 77777;
       EXPECT_EQ(inside([&] { return pld_begin(pass, kind.stages[0], &frame); }), PLD_ERROR_TEXTURE);

@@ -16,7 +16,8 @@
 #include <stdint.h>
 
 #define PLD_VERSION_MAJOR 0
-#define PLD_VERSION_MINOR 3 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). A library takes hosts of every earlier minor version. */
+#define PLD_VERSION_MINOR 4 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2.
+                               A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
 
@@ -201,7 +202,21 @@ typedef PLD_ENUM(pld_view) {
   PLD_VIEW_OFFSET = 6,       /* red, green: 0.5 + offset / 128 px; blue: 1 where anything refracts */
   PLD_VIEW_SPREAD = 7,       /* D / 64 px */
   PLD_VIEW_CLAMPED = 8,      /* 1 where a sum is as large as its format goes: red colour or weight, green spread or offset */
-  PLD_VIEW_SOLID = 9         /* colour of the nearest solid */
+  PLD_VIEW_SOLID = 9,        /* colour of the nearest solid */
+  /* With PLD_FEATURE_RIMS: */
+  PLD_VIEW_RIM_OCCLUSION = 10, /* red: what the opaque pixels beside a rim hide of the light from around; green: the rest,
+                                  1 - red; black where no rim is */
+  PLD_VIEW_RIM_LOSS = 11,      /* what rims have taken from the layers' light, premultiplied, as the picture would hold it */
+  /* With PLD_FEATURE_LOW_RESOLUTION, a square of low_factor pixels for each texel, as before upsampling: */
+  PLD_VIEW_LOW_COLOUR = 12,       /* light of a texel's layers, premultiplied */
+  PLD_VIEW_LOW_TRANSMISSION = 13, /* beta of a texel */
+  PLD_VIEW_LOW_DEPTH = 14,        /* planar depths z, as z / (z + 1 m): red mean of the layers, green nearest of them, blue
+                                     farthest opaque depth, which they were tested against; black where no layer is */
+  /* Of shadow maps, between frames or after any stage: texel (x, y) of face pld_target.shadow_face as it is looked up, at pixel
+     (x, y); as many pixels as the face has, pld_shadow_info.size or, of forms 0 and 1, a quarter of it, either way. */
+  PLD_VIEW_SHADOW_TRANSMISSION = 15, /* what all of a texel's casters leave of the light */
+  PLD_VIEW_SHADOW_COINS = 16,        /* in what part of a texel's samples coins have left a caster, per channel */
+  PLD_VIEW_SHADOW_DEPTH = 17         /* their mean depth, 0 at near_depth (of local lights, at the light), 1 at far_depth */
 } pld_view;
 
 typedef PLD_ENUM(pld_target_kind) { PLD_TARGET_TEXTURE = 0, PLD_TARGET_FRAMEBUFFER = 1 } pld_target_kind;
@@ -211,6 +226,7 @@ typedef struct pld_target {
   pld_target_kind kind;
   uint32_t name; /* of a texture other than the frame's, or of a framebuffer whose first draw buffer is drawn to */
   pld_view view;
+  int32_t shadow_face; /* of PLD_VIEW_SHADOW_*: 0 to pld_shadow_info.faces - 1, one that has been drawn. Not in 0.3 */
 } pld_target;
 
 typedef PLD_ENUM(pld_value) {
@@ -293,7 +309,8 @@ PLD_API pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height);
 PLD_API pld_status pld_begin(pld_pass* pass, pld_stage stage, const pld_frame* frame);
 /* Puts back the state that pld_begin() found. */
 PLD_API pld_status pld_end(pld_pass* pass);
-/* The picture, or a view of a plane, into the target. Pixels without layers get the background's bits. */
+/* The picture, or a view of a plane, into the target. Pixels without layers get the background's bits. Views of shadow
+   maps need no frame. */
 PLD_API pld_status pld_resolve(pld_pass* pass, const pld_target* target);
 PLD_API pld_status pld_query(pld_pass* pass, pld_value what, uint64_t* value);
 /* Sets *pass to null. With no context current nothing on the device is given back. */

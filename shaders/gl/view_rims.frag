@@ -1,0 +1,28 @@
+// Rims as a picture, to look at. PLD_VIEW_RIM_* of pellucid.h
+#include "gl/resolve_here.glsl"
+
+layout(binding = 11) uniform sampler2D averagedRims;  // where the spread pyramid lies, which is not looked up
+layout(binding = 12) uniform sampler2D addedRims;
+layout(binding = 13) uniform sampler2D rimGradients;
+layout(binding = 14) uniform sampler2D opaqueOpen;
+
+layout(location = 0) out vec4 picture;
+
+uniform int view;
+
+#include "gl/rims_here.glsl"
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  RimsHere rims = rimsAt(pixel);
+  picture = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+  if (!rims.any) return;
+  if (view == 10) picture.rgb = vec3(rims.hidden, 1.0f - rims.hidden, 0.0f);
+  if (view == 11) {
+    OitSums sums = sumsAt(pixel);
+    vec3 left = resolveSums(sums, false).transparent;
+    sums.numerator += rims.averaged;
+    sums.light += rims.added;
+    picture.rgb = max(resolveSums(sums, false).transparent - left, vec3(0.0f));
+  }
+}
