@@ -83,6 +83,7 @@ std::string hostText(const std::string& file, const std::vector<std::string>& de
     if (word == "PLD_UNIT_0") return unit(0);
     if (word == "PLD_UNIT_1") return unit(1);
     if (word == "PLD_UNIT_2") return unit(2);
+    if (word == "PLD_UNIT_3") return unit(3);
     if (own.count(word) && word.rfind("PLD_", 0) == 0) return names.constants[0] ? names.constants + word.substr(4) : word;
     // Of the shared text pldExp() and its like are not the host's to call, but theirs is the name in the layers' seam.
     const bool hosts = word.rfind("Pld", 0) == 0 || (word.rfind("pld", 0) == 0 && (!names.constants[0] || isPublic(word)));
@@ -115,7 +116,7 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
   return hostText("gl/seam.glsl", seamDefines(permutation, stage),
                   {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "DIFFUSE_IN_ALPHA", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
-                   "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
+                   "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "RIMS_HERE", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
                    "ROWS", "UNITS", "EXPOSURE", "ORTHOGRAPHIC", "RANGE_NEAR", "RANGE_FAR", "EXPONENT", "REFRACT", "REFRACT_DISTANCE",
                    "DIFFUSION_K0", "DIFFUSION_K1"},
                   version, places, {"PLD_SEAM", "pld_", ""});

@@ -34,13 +34,13 @@ bool pld_pass::isCurrent() const {
 }
 
 uint32_t pld_pass::stagesNeeded() const {
-  return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) | (permutation_.rims() ? 1u << PLD_STAGE_RIMS : 0u) |
+  return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) | (permutation_.rimsApart() ? 1u << PLD_STAGE_RIMS : 0u) |
          (permutation_.low() ? 1u << PLD_STAGE_LOW : 0u) |
          (permutation_.fronts() ? 1u << PLD_STAGE_FRONT : 0u) | 1u << PLD_STAGE_LAYERS;
 }
 
 Units pld_pass::unitsOf() const {
-  const bool views = permutation_.rims() && (info_.flags & PLD_FLAG_DEBUG_VIEWS);
+  const bool views = permutation_.rimsApart() && (info_.flags & PLD_FLAG_DEBUG_VIEWS);
   return {0, permutation_.scatters() || views ? 16 : 11};
 }
 
@@ -68,7 +68,7 @@ pld_status pld_pass::makePrograms() {
   build(picture_, "gl/picture.frag", defines);
   if (permutation_.planarDepth()) build(planarDepth_, "gl/planar_depth.frag", {});
   if (permutation_.has(PLD_FEATURE_DIFFUSION)) build(spreadLevel_, "gl/spread_level.frag", defines);
-  if (permutation_.rims()) build(rimsApply_, "gl/rims_apply.frag", defines);
+  if (permutation_.rimsApart()) build(rimsApply_, "gl/rims_apply.frag", defines);
   if (permutation_.low() && failure.empty()) failure = buildLowPrograms();
   if (failure.empty()) failure = buildViewPrograms();
   return failure.empty() ? PLD_OK : fail(PLD_ERROR_INTERNAL, "%s", failure.c_str());
@@ -94,9 +94,10 @@ pld_status pld_pass::create(const pld_create_info& info) {
   gl.GetIntegerv(GL_MAX_UNIFORM_BUFFER_BINDINGS, &bindings);
   gl.GetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
   gl.GetIntegerv(GL_MAX_DRAW_BUFFERS, &drawBuffers);
-  if (info.uniform_binding >= static_cast<uint32_t>(bindings) || units < 3 || info.texture_unit > static_cast<uint32_t>(std::min(units, kMostUnits) - 3))
+  const int lastUnit = std::min(units, kMostUnits) - permutation_.seamUnits();
+  if (info.uniform_binding >= static_cast<uint32_t>(bindings) || lastUnit < 0 || info.texture_unit > static_cast<uint32_t>(lastUnit))
     return fail(PLD_ERROR_ARGUMENT, "pld_create: uniform_binding %u, texture_unit %u: expected below %d and at most %d",
-                info.uniform_binding, info.texture_unit, bindings, std::min(units, kMostUnits) - 3);
+                info.uniform_binding, info.texture_unit, bindings, lastUnit);
   if (drawBuffers < kDrawBuffers)
     return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d draw buffers, expected %d", drawBuffers, kDrawBuffers);
   while (const GLenum pending = gl.GetError()) {
@@ -168,7 +169,7 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
       value = planes_.size();
       return PLD_OK;
     case PLD_VALUE_GEOMETRY_PASSES:
-      value = 1u + (permutation_.fronts() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (permutation_.rims() ? 1u : 0u);
+      value = 1u + (permutation_.fronts() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (permutation_.rimsApart() ? 1u : 0u);
       return PLD_OK;
     case PLD_VALUE_NS_BEGIN:
     case PLD_VALUE_NS_DRAWS:
@@ -232,8 +233,8 @@ pld_status pld_pass::connect(GLuint program) {
   GLint current = 0;
   gl.GetIntegerv(GL_CURRENT_PROGRAM, &current);
   gl.UseProgram(program);
-  const char* names[] = {"pldOpaqueZ", "pldSolid", "pldFrontZ"};
-  for (GLint i = 0; i < 3; ++i) {
+  const char* names[] = {"pldOpaqueZ", "pldSolid", "pldFrontZ", "pldOpaqueOpen"};
+  for (GLint i = 0; i < permutation_.seamUnits(); ++i) {
     const GLint place = gl.GetUniformLocation(program, names[i]);
     if (place >= 0) gl.Uniform1i(place, static_cast<GLint>(info_.texture_unit) + i);
   }

@@ -61,7 +61,7 @@ struct pld_pass {
   int shadowChannels() const { return shadowInfo_.coloured ? 3 : 1; }
   void setFrame(const pld_frame& frame);
   void drawPlanarDepth(const pld_frame& frame);
-  void openStage(pld_stage stage);
+  void openStage(pld_stage stage, GLuint occlusion);
   void clearStage(pld_stage stage);
   void drawPyramid();
   pld_status darkenRims();

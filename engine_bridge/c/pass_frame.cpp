@@ -149,7 +149,7 @@ void pld_pass::setFrame(const pld_frame& frame) {
   const GLfloat block[16] = {frame.metres_per_unit,
                              frame.pre_exposure,
                              orthographic ? 1.0f : 0.0f,
-                             0.0f,
+                             static_cast<float>(frame.occlusion),
                              frame.weight_near,
                              frame.weight_far,
                              frame.weight_exponent,
@@ -160,8 +160,8 @@ void pld_pass::setFrame(const pld_frame& frame) {
                              std::fabs(frame.projection[5]) * halfHeight * scale,
                              frame.diffusion_k0,
                              frame.diffusion_k1,
-                             0.0f,
-                             0.0f};
+                             static_cast<float>(frame.width),
+                             static_cast<float>(frame.height)};
   gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_);
   gl.BufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(block), block);
 }
@@ -208,7 +208,7 @@ void pld_pass::blend(GLuint i, BlendKind kind) {
                             kind == BlendKind::minimum || kind == BlendKind::alphaMinimum ? GL_MIN : GL_FUNC_ADD);
 }
 
-void pld_pass::openStage(pld_stage stage) {
+void pld_pass::openStage(pld_stage stage, GLuint occlusion) {
   if (stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW)
     for (const Plane& plane : stage == PLD_STAGE_LOW ? low_ : planes_) blend(plane.spec.attachment, plane.spec.blend);
   if (stage == PLD_STAGE_FRONT) blend(0, BlendKind::minimum);
@@ -223,6 +223,7 @@ void pld_pass::openStage(pld_stage stage) {
   bind(info_.texture_unit, stage == PLD_STAGE_LOW ? lowFarZ_ : planarZ_);
   bind(info_.texture_unit + 1, solid_);
   bind(info_.texture_unit + 2, frontZ_);
+  if (permutation_.rimsInSeam()) bind(info_.texture_unit + 3, occlusion);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, info_.uniform_binding, uniforms_);
 }
 
@@ -235,7 +236,7 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   // Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six, layers of low
   // resolution resolved from ten.
   const auto seamUnit = static_cast<int>(info_.texture_unit);
-  if (saves) saved_.save(gl, {0, std::max(seamUnit + 3, stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 10 : 0)}, static_cast<int>(info_.uniform_binding));
+  if (saves) saved_.save(gl, {0, std::max(seamUnit + permutation_.seamUnits(), stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 10 : 0)}, static_cast<int>(info_.uniform_binding));
   const GLuint target = frameOf(stage);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   frameDepthAttachment_ = stage == PLD_STAGE_SOLIDS || stage == PLD_STAGE_LOW ? 0 : attachment;
@@ -267,7 +268,7 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   }
   setAccumulation(gl, frame.width / (low ? frame.low_factor : 1), frame.height / (low ? frame.low_factor : 1));
   clearStage(stage);
-  openStage(stage);
+  openStage(stage, frame.occlusion_texture);
   if (saves) saved_.restoreActiveUnit(gl);
   timers_.mark(gl, Timers::markOf(stage, 1));
   frame_ = frame;

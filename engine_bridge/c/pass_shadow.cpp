@@ -85,9 +85,10 @@ pld_status pld_pass::checkShadowInfo(const pld_shadow_info& info) {
   if (info.uniform_binding >= static_cast<uint32_t>(bindings) || info.texture_unit >= static_cast<uint32_t>(units))
     return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: uniform_binding %u, texture_unit %u: the device has %d bindings, %d units",
                 info.uniform_binding, info.texture_unit, bindings, units);
-  if (info.uniform_binding == info_.uniform_binding || info.texture_unit - info_.texture_unit < 3)
+  if (info.uniform_binding == info_.uniform_binding || info.texture_unit - info_.texture_unit < static_cast<uint32_t>(permutation_.seamUnits()))
     return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: uniform_binding %u, texture_unit %u: expected others than the seam's, %u and %u to %u",
-                info.uniform_binding, info.texture_unit, info_.uniform_binding, info_.texture_unit, info_.texture_unit + 2);
+                info.uniform_binding, info.texture_unit, info_.uniform_binding, info_.texture_unit,
+                info_.texture_unit + static_cast<uint32_t>(permutation_.seamUnits()) - 1);
   const int edge = info.form <= PLD_SHADOW_PUBLISHED ? info.size / shading::PLD_SHADOW_DIVIDE : info.size;
   if (static_cast<int64_t>(edge) * edge * info.faces * (info.coloured ? 3 : 1) > INT32_MAX)
     return fail(PLD_ERROR_SIZE, "pld_shadow_resize: %d faces of %d x %d texels: more than 2^31 - 1 together", info.faces, edge, edge);

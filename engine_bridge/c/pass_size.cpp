@@ -89,7 +89,7 @@ pld_status pld_pass::makeTextures(int width, int height) {
     check();
   }
   if (permutation_.low()) complete = makeLowTextures(width, height) && complete;
-  if (permutation_.rims()) {
+  if (permutation_.rimsApart()) {
     GLenum all[kRimPlanes];
     for (GLuint i = 0; i < kRimPlanes; ++i) {
       rims_[i] = makeTexture(i < 2 ? GL_RGBA32F : GL_RG32F, width, height, i < 2 ? 128 : 64);

@@ -23,7 +23,7 @@ bool pld_pass::isOfParts(pld_view view) {
 std::string pld_pass::buildViewPrograms() {
   if (!(info_.flags & PLD_FLAG_DEBUG_VIEWS)) return {};
   std::string failure = view_.build(gl, "gl/view.frag", resolveDefines(permutation_));
-  if (failure.empty() && permutation_.rims()) {
+  if (failure.empty() && permutation_.rimsApart()) {
     // What rims take is looked at where it is, not where it is seen.
     std::vector<std::string> defines = resolveDefines(permutation_);
     std::erase(defines, "SCATTER");
@@ -40,9 +40,9 @@ pld_status pld_pass::checkView(const pld_target& target) {
   if (target.view != PLD_VIEW_PICTURE && !(info_.flags & PLD_FLAG_DEBUG_VIEWS))
     return fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: views need PLD_FLAG_DEBUG_VIEWS");
   const bool rims = isOfRims(target.view);
-  if ((rims && !permutation_.rims()) || (isOfLow(target.view) && !permutation_.low()))
+  if ((rims && !permutation_.rimsApart()) || (isOfLow(target.view) && !permutation_.low()))
     return fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: view %d needs %s", static_cast<int>(target.view),
-                rims ? "PLD_FEATURE_RIMS" : "PLD_FEATURE_LOW_RESOLUTION");
+                rims ? "PLD_FEATURE_RIMS and a stage of rims" : "PLD_FEATURE_LOW_RESOLUTION");
   TextureFacts open;
   if (rims && (!factsOf(gl, frame_.occlusion_texture, open) || open.width < frame_.width || open.height < frame_.height))
     return fail(PLD_ERROR_TEXTURE, "pld_resolve: occlusion_texture %u is no longer what pld_begin saw", frame_.occlusion_texture);

@@ -54,10 +54,10 @@ std::string conflictOf(const Permutation& p) {
     return "features: found PLD_FEATURE_DISPERSION without PLD_FEATURE_REFRACTION";
   if (p.scatters() && p.method != PLD_METHOD_PHENOMENOLOGICAL)
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
-  if (p.rims() && (p.published() || p.fronts()))
-    return "features: found PLD_FEATURE_RIMS with PLD_TIER_PUBLISHED or PLD_METHOD_FRONT_TAIL, whose planes hold no light to take it from";
-  if (p.low() && (p.published() || p.fronts()))
-    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_TIER_PUBLISHED or PLD_METHOD_FRONT_TAIL, whose planes take no resolved layer";
+  if (p.low() && p.published())
+    return "features: found PLD_FEATURE_LOW_RESOLUTION in PLD_TIER_PUBLISHED, which keeps no depths to upsample by";
+  if (p.low() && p.fronts())
+    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_METHOD_FRONT_TAIL, whose nearest layer is chosen before these are known";
   return {};
 }
 
@@ -126,6 +126,7 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("STAGE_FRONT", stage == PLD_STAGE_FRONT);
   define("STAGE_RIMS", stage == PLD_STAGE_RIMS);
   define("RIMS", p.rims());
+  define("RIMS_HERE", p.rimsInSeam() && layers);
   define("DEPTH_IN_SHADER", p.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS || low);
   define("SOLIDS", stage != PLD_STAGE_SOLIDS && !low && p.has(PLD_FEATURE_SOLIDS));
   define("PUBLISHED", p.published());

@@ -29,6 +29,10 @@ struct Permutation {
   bool diffuseInAlpha() const { return scatters() && !grey() && tier == PLD_TIER_FLOAT; }
   bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
   bool rims() const { return has(PLD_FEATURE_RIMS); }
+  // From sums of one kind what occlusion hides is taken later; others take rims that are dark already.
+  bool rimsInSeam() const { return rims() && (published() || fronts()); }
+  bool rimsApart() const { return rims() && !rimsInSeam(); }
+  int seamUnits() const { return rimsInSeam() ? 4 : 3; }  // textures that the seam reads
   // Whether planar depth is needed beside the host's.
   bool planarDepth() const { return rims() || low() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
 };

@@ -3,13 +3,15 @@
 // write a colour. Defines choose the stage (STAGE_SOLIDS, STAGE_FRONT, STAGE_RIMS, else the layers) and the planes.
 #include "shared/diffusion.glsl"
 #include "shared/resolve.glsl"  // here: what is first included inside of a condition is there under it alone
+#if defined(STAGE_RIMS) || defined(RIMS_HERE)
+#include "shared/occlusion.glsl"
+#endif
 #if defined(STAGE_SOLIDS)
 layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
 #elif defined(STAGE_FRONT)
 layout(location = 0) out float frontZ;  // blended by MIN
 #elif defined(STAGE_RIMS)
 #include "gl/rims_output.glsl"
-#include "shared/occlusion.glsl"
 vec3 seamAround;
 vec2 seamGradient;
 bool seamIsRim = false;
@@ -25,10 +27,10 @@ bool seamIsRim = false;
 #endif
 
 PLD_FRAME_LAYOUT uniform PldFrame {
-  vec4 pldScale;       // metres per unit; pre-exposure; not 0: orthographic
+  vec4 pldScale;       // metres per unit; pre-exposure; not 0: orthographic; PLD_OCCLUSION_*
   vec4 pldWeight;      // range near, far in metres; exponent
   vec4 pldRefraction;  // PLD_REFRACT_*; metres (at a distance); focal length in x and y, pixels
-  vec4 pldDiffusion;   // k0, k1 metres
+  vec4 pldDiffusion;   // k0, k1 metres; width and height of the picture
 };
 // What pld_fix() fixed is a constant; the rest is read from the block.
 #ifndef UNITS
@@ -56,6 +58,9 @@ PLD_FRAME_LAYOUT uniform PldFrame {
 PLD_UNIT_0 uniform sampler2D pldOpaqueZ;  // planar metres, +inf where nothing is
 PLD_UNIT_1 uniform sampler2D pldSolid;    // nearest fragment that hides everything: rgb, planar z
 PLD_UNIT_2 uniform sampler2D pldFrontZ;   // nearest layer, planar metres
+#ifdef RIMS_HERE
+PLD_UNIT_3 uniform sampler2D pldOpaqueOpen;  // ambient occlusion of what is opaque, 1 open
+#endif
 
 // Under this fragment. A nearest lookup takes a rasteriser on a CPU less than a fetch, which asks for its level.
 vec4 seamTexel(sampler2D plane) {
@@ -211,12 +216,34 @@ void pldWriteFragment(PldSurface surface) {
   pldWriteLayer(surface.radiance * EXPOSURE, surface.coverage, surface.transmission, z, offset, variance, dispersion);
 }
 
+#ifdef RIMS_HERE
+ivec2 occludersSize() { return ivec2(pldDiffusion.zw); }
+
+vec2 occluderAt(ivec2 pixel) {
+  float z = texelFetch(pldOpaqueZ, pixel, 0).r;
+#ifdef SOLIDS
+  z = min(z, texelFetch(pldSolid, pixel, 0).a);
+#endif
+  return vec2(z, texelFetch(pldOpaqueOpen, pixel, 0).r);
+}
+
+#include "gl/neighbours.glsl"
+#endif
+
 #ifdef RIMS
 // In place of pldWriteFragment(), for cut-out surfaces whose antialiased rim (0 < coverage < 1) takes its ambient
 // occlusion from the opaque pixels beside it.
 //   around    the part of surface.radiance that occlusion darkens, as radiance is
 //   gradient  pldCoverageGradient(), taken before any discard
 void pldWriteRim(PldSurface surface, vec3 around, vec2 gradient) {
+#ifdef RIMS_HERE
+  if (isRim(surface.coverage)) {
+    float z = -surface.position.z * UNITS;
+    precise float hidden = 1.0f - neighboursOcclusion(gradient, z, ivec2(gl_FragCoord.xy), int(pldScale.w));
+    precise vec3 left = surface.radiance - hidden * around;
+    surface.radiance = left;
+  }
+#endif
 #ifdef STAGE_RIMS
   seamAround = around * EXPOSURE;
   seamGradient = gradient;

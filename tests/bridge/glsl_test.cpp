@@ -65,6 +65,8 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, PLD_FEATURE_DIFFUSION},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION | PLD_FEATURE_SOLIDS},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, 0},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS | PLD_FEATURE_SOLIDS},
+                        {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, PLD_FEATURE_RIMS},
                         {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0},
                         {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS}};
   int compiled = 0, skipped = 0;
@@ -86,7 +88,7 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
           const pld_status status = pld_glsl(pass, stage, version, &seam);
           const bool has = stage == PLD_STAGE_LAYERS || (stage == PLD_STAGE_FRONT && one.method == PLD_METHOD_FRONT_TAIL) ||
                            (stage == PLD_STAGE_LOW && (one.features & PLD_FEATURE_LOW_RESOLUTION)) ||
-                           (stage == PLD_STAGE_RIMS && (one.features & PLD_FEATURE_RIMS)) ||
+                           (stage == PLD_STAGE_RIMS && (one.features & PLD_FEATURE_RIMS) && one.method != PLD_METHOD_FRONT_TAIL && one.tier != PLD_TIER_PUBLISHED) ||
                            (stage == PLD_STAGE_SOLIDS && (one.features & PLD_FEATURE_SOLIDS));
           ASSERT_EQ(status, has ? PLD_OK : PLD_ERROR_ARGUMENT);
           if (!has) continue;

@@ -6,7 +6,9 @@
 #include <cstring>
 
 #include "composite/fold.h"
+#include "composite/fold_published.h"
 #include "composite/methods/method.h"
+#include "composite/occlusion.h"
 #include "composite/resolve.h"
 #include "composite/rims.h"
 #include "tests/bridge/host.h"
@@ -24,6 +26,7 @@ struct Leaves {
   FragmentLists lists;
   OccluderPlanes occluders;
   RimPlanes rims{kWidth, kHeight};
+  std::vector<glm::vec4> aroundOf, gradientOf;  // of each of the lists' fragments
   Image<glm::vec4> look[kLayers], around[kLayers], gradient[kLayers];  // radiance, coverage; around, z; gradient
 
   explicit Leaves(bool solids) {
@@ -61,6 +64,8 @@ struct Leaves {
           const Fragment one = seen[next++];
           if (one.z > gbuffer.viewZ.at(x, y) || (one.coverage < 1.0f && one.z > lists.solid.at(x, y).a)) continue;
           lists.fragments.push_back(one);
+          aroundOf.push_back(around[i].at(x, y));
+          gradientOf.push_back(gradient[i].at(x, y));
           if (one.coverage == 1.0f) continue;
           shading::Layer part{glm::vec3(around[i].at(x, y)), one.coverage, one.transmission, one.z};
           const shading::OitSums sums = shading::layerSums(part, kWeight, shading::PLD_NORMALISE_SPECTRAL);
@@ -71,6 +76,21 @@ struct Leaves {
         }
         lists.offsets.push_back(lists.fragments.size());
       }
+  }
+
+  // The fragments as `composite` lists them: each rim darkened by its own neighbours.
+  FragmentLists darkened(int form) const {
+    FragmentLists dark = lists;
+    for (std::size_t pixel = 0; pixel + 1 < lists.offsets.size(); ++pixel)
+      for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
+        Fragment& one = dark.fragments[i];
+        if (!shading::isRim(one.coverage)) continue;
+        const shading::OcclusionSearch search = shading::occlusionSearch(glm::vec2(gradientOf[i]));
+        const glm::ivec2 place(static_cast<int>(pixel) % kWidth, static_cast<int>(pixel) / kWidth);
+        const float hidden = 1.0f - shading::occlusionFrom(neighboursOcclusion(occluders, place, search, one.z, form), form);
+        one.radiance -= hidden * glm::vec3(aroundOf[i]);
+      }
+    return dark;
   }
 };
 
@@ -84,22 +104,38 @@ void main() {
 }
 )";
 
-std::vector<float> bridged(const Leaves& leaves, uint32_t features, pld_occlusion form, int version) {
+struct How {
+  uint32_t features;
+  pld_occlusion form;
+  int version = 450;
+  pld_method method = PLD_METHOD_PHENOMENOLOGICAL;
+  pld_tier tier = PLD_TIER_FLOAT;
+};
+
+//   sums  filled with the first plane of the layers, if it is asked for
+std::vector<float> bridged(const Leaves& leaves, const How& how, std::vector<float>* sums = nullptr) {
+  const uint32_t features = how.features;
+  const int version = how.version;
   Host host(kWidth, kHeight);
   host.upload(leaves.gbuffer);
   const GLuint open = makeTexture(GL_R32F, kWidth, kHeight);
   fillTexture(open, kWidth, kHeight, GL_RED, &leaves.occluders.occlusion.at(0, 0));
   pld_create_info info = host.info();
   info.features = features | PLD_FEATURE_RIMS;
+  info.method = how.method;
+  info.tier = how.tier;
   pld_pass* pass = host.create(info);
   if (!pass) return {};
+  const bool fronts = how.method == PLD_METHOD_FRONT_TAIL, apart = !fronts && how.tier != PLD_TIER_PUBLISHED;
   pld_frame frame = host.frame();
   frame.occlusion_texture = open;
-  frame.occlusion = form;
+  frame.occlusion = how.form;
   GLuint array = 0, textures[3];
   glCreateVertexArrays(1, &array);
   for (GLuint& one : textures) one = makeTexture(GL_RGBA32F, kWidth, kHeight);
-  std::vector<pld_stage> stages{PLD_STAGE_LAYERS, PLD_STAGE_RIMS};
+  std::vector<pld_stage> stages{PLD_STAGE_LAYERS};
+  if (apart) stages.push_back(PLD_STAGE_RIMS);
+  if (fronts) stages.insert(stages.begin(), PLD_STAGE_FRONT);
   if (features & PLD_FEATURE_SOLIDS) stages.insert(stages.begin(), PLD_STAGE_SOLIDS);
   for (const pld_stage stage : stages) {
     const char* seam = nullptr;
@@ -123,6 +159,9 @@ std::vector<float> bridged(const Leaves& leaves, uint32_t features, pld_occlusio
     EXPECT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
     glDeleteProgram(program);
   }
+  uint64_t plane = 0;
+  EXPECT_EQ(pld_query(pass, PLD_VALUE_FIRST_PLANE, &plane), PLD_OK);
+  if (sums) *sums = readTexture(static_cast<GLuint>(plane), kWidth, kHeight, GL_RGBA);
   return host.finish(pass);
 }
 
@@ -147,7 +186,7 @@ TEST(BridgeRims, OcclusionAtRimsIsThatOfTheRooms) {
     const Image<glm::vec4> open = compose(resolveOver(planes, {}, {}, leaves.gbuffer), leaves.gbuffer).rgba;
     const std::size_t rims = occludeRims(leaves.rims, leaves.occluders, static_cast<int>(one.form), planes);
     const Image<glm::vec4> expected = compose(resolveOver(planes, {}, {}, leaves.gbuffer), leaves.gbuffer).rgba;
-    const std::vector<float> found = bridged(leaves, one.features, one.form, one.version);
+    const std::vector<float> found = bridged(leaves, {one.features, one.form, one.version});
     ASSERT_EQ(found.size(), 4 * expected.size());
     std::size_t words = 0;
     double worst = 0, darkened = 0;
@@ -166,6 +205,74 @@ TEST(BridgeRims, OcclusionAtRimsIsThatOfTheRooms) {
     else
       EXPECT_LT(worst, 5e-7);  // GLSL 3.30 has no `precise`
   }
+}
+
+// Where the sums cannot give back what occlusion hides, layers take each rim dark, as the offline pass does.
+TEST(BridgeRims, FrontAndTailTakesDarkRims) {
+  GlContext context;
+  struct Case {
+    const char* what;
+    uint32_t features;
+    pld_occlusion form;
+    int version;
+  };
+  for (const Case& one : {Case{"grey", 0, PLD_OCCLUSION_RELATIVE, 450}, Case{"coloured, light, published form", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_PUBLISHED, 450},
+                          Case{"solids", PLD_FEATURE_SOLIDS, PLD_OCCLUSION_RELATIVE, 450}, Case{"GLSL 3.30", PLD_FEATURE_LIGHT, PLD_OCCLUSION_RELATIVE, 330}}) {
+    const Leaves leaves((one.features & PLD_FEATURE_SOLIDS) != 0);
+    MethodChoice choice;
+    choice.weight = kWeight;
+    const auto method = [&](const FragmentLists& lists) {
+      Veil veil(kWidth, kHeight);
+      compositeBy(*chooseMethod("front+tail"), choice, lists, leaves.gbuffer.data, veil);
+      return compose(veil, leaves.gbuffer).rgba;
+    };
+    const Image<glm::vec4> expected = method(leaves.darkened(static_cast<int>(one.form))), open = method(leaves.lists);
+    const std::vector<float> found = bridged(leaves, {one.features, one.form, one.version, PLD_METHOD_FRONT_TAIL});
+    ASSERT_EQ(found.size(), 4 * expected.size());
+    double worst = 0, darkened = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double value = static_cast<double>(expected[i / 4][static_cast<int>(i % 4)]);
+      worst = std::max(worst, std::abs(value - static_cast<double>(found[i])));
+      darkened = std::max(darkened, static_cast<double>(open[i / 4][static_cast<int>(i % 4)]) - value);
+    }
+    std::printf("rims under front+tail, %s: darkened by up to %.2f, off the method in double by %.2g\n", one.what, darkened, worst);
+    EXPECT_GT(darkened, .2);
+    EXPECT_LT(worst, 2e-5);  // as without rims: float sums and a float quotient
+  }
+}
+
+TEST(BridgeRims, PublishedTargetsTakeDarkRims) {
+  GlContext context;
+  for (const bool solids : {false, true})
+    for (const pld_occlusion form : {PLD_OCCLUSION_RELATIVE, PLD_OCCLUSION_PUBLISHED}) {
+      const Leaves leaves(solids);
+      const auto folded = [&](const FragmentLists& lists) {
+        OitPlanes planes = emptyPublishedPlanes(leaves.gbuffer.display, leaves.gbuffer.data);
+        PublishedClamps clamps;
+        planes.info.weight = kWeight;
+        foldPublished(lists, kWeight, planes, clamps);
+        return planes;
+      };
+      const OitPlanes dark = folded(leaves.darkened(static_cast<int>(form))), open = folded(leaves.lists);
+      const Image<glm::vec4> expected = compose(resolveOver(dark, {}, {}, leaves.gbuffer), leaves.gbuffer).rgba;
+      std::vector<float> sums;
+      const std::vector<float> found =
+          bridged(leaves, {solids ? uint32_t{PLD_FEATURE_SOLIDS} : 0u, form, 450, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED}, &sums);
+      ASSERT_EQ(found.size(), 4 * expected.size());
+      double off = 0, lost = 0, picture = 0;
+      for (std::size_t i = 0; i < dark.radiance.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+          const double value = static_cast<double>(dark.radiance[i][c]), brightest = std::max(static_cast<double>(open.radiance[i][c]), 1e-3);
+          off = std::max(off, std::abs(static_cast<double>(sums[4 * i + static_cast<std::size_t>(c)]) - value) / brightest);
+          lost = std::max(lost, (brightest - value) / brightest);
+          picture = std::max(picture, std::abs(static_cast<double>(found[4 * i + static_cast<std::size_t>(c)]) - static_cast<double>(expected[i][c])));
+        }
+      std::printf("rims in the published tier%s, form %d: sums lose up to %.2f of themselves and are off the offline fold's by %.2g; picture %.2g\n",
+                  solids ? ", solids" : "", static_cast<int>(form), lost, off, picture);
+      EXPECT_GT(lost, .4);
+      EXPECT_LT(off, kLayers * std::ldexp(1.0, -10));  // halves, cut instead of rounded
+      EXPECT_LT(picture, kLayers * 1.5 / 255);         // and a step of 8 bits for each layer
+    }
 }
 
 // A host that was built against the first header has no occlusion_texture to give.
@@ -195,7 +302,30 @@ TEST(BridgeRims, WrongOcclusionIsRefused) {
   for (const bool fronts : {false, true}) {
     pld_create_info wrong = info;
     fronts ? void(wrong.method = PLD_METHOD_FRONT_TAIL) : void(wrong.tier = PLD_TIER_PUBLISHED);
-    EXPECT_EQ(pld_create(&wrong, &pass), PLD_ERROR_UNSUPPORTED);
+    // They have no stage of rims, nor a view of one, and their seam reads a unit more.
+    wrong.texture_unit = 29;
+    EXPECT_EQ(pld_create(&wrong, &pass), PLD_ERROR_ARGUMENT);
+    wrong.texture_unit = 28;
+    wrong.flags = PLD_FLAG_DEBUG_VIEWS;
+    pass = host.create(wrong);
+    ASSERT_NE(pass, nullptr);
+    const char* text = nullptr;
+    EXPECT_EQ(pld_glsl(pass, PLD_STAGE_RIMS, 330, &text), PLD_ERROR_ARGUMENT);
+    pld_frame frame = host.frame();
+    EXPECT_EQ(pld_begin(pass, PLD_STAGE_RIMS, &frame), PLD_ERROR_ORDER);
+    const pld_stage first = fronts ? PLD_STAGE_FRONT : PLD_STAGE_LAYERS;
+    frame.occlusion_texture = 4711;
+    EXPECT_EQ(pld_begin(pass, first, &frame), PLD_ERROR_TEXTURE);
+    frame = host.frame();
+    for (const pld_stage stage : {first, PLD_STAGE_LAYERS}) {
+      ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+      ASSERT_EQ(pld_end(pass), PLD_OK);
+    }
+    pld_target target = host.target();
+    target.view = PLD_VIEW_RIM_LOSS;
+    EXPECT_EQ(pld_resolve(pass, &target), PLD_ERROR_UNSUPPORTED);
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+    pld_destroy(&pass);
   }
   pass = host.create(info);
   ASSERT_NE(pass, nullptr);

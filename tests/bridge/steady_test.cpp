@@ -1,6 +1,7 @@
 // After pld_resize(): no GL object is made, none destroyed, and the library asks for no memory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <new>
@@ -107,7 +108,7 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
        PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION |
            PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
        {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
-      {"half, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, 0, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
+      {"half, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_RIMS, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
       {"published", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION, {PLD_STAGE_LAYERS}}};
   GlContext context;
   Host host(48, 32);
@@ -135,7 +136,7 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     allocations = 0;
     const pld_target target = host.target();
     std::vector<pld_view> views{PLD_VIEW_WEIGHT, PLD_VIEW_SHADOW_TRANSMISSION, PLD_VIEW_SHADOW_DEPTH};
-    if (kind.features & PLD_FEATURE_RIMS) views.push_back(PLD_VIEW_RIM_LOSS);
+    if (std::count(kind.stages.begin(), kind.stages.end(), PLD_STAGE_RIMS)) views.push_back(PLD_VIEW_RIM_LOSS);
     if (kind.features & PLD_FEATURE_LOW_RESOLUTION) views.push_back(PLD_VIEW_LOW_COLOUR);
     uint64_t value = 0;
     for (int number = 0; number < 20; ++number) {

@@ -16,7 +16,8 @@
 #include <stdint.h>
 
 #define PLD_VERSION_MAJOR 0
-#define PLD_VERSION_MINOR 4 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2.
+#define PLD_VERSION_MINOR 4 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,
+                               rims in the published tier and with PLD_METHOD_FRONT_TAIL.
                                A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -85,11 +86,13 @@ typedef PLD_ENUM(pld_feature) {
   PLD_FEATURE_DISPERSION = 16, /* refraction of its own for red and blue; not in the published tier */
   PLD_FEATURE_SOLIDS = 32,     /* some fragments hide everything: PLD_STAGE_SOLIDS is drawn before the layers */
   PLD_FEATURE_RIMS = 64,       /* antialiased rims of cut-out leaves take their ambient occlusion from the opaque pixels
-                                  beside them: PLD_STAGE_RIMS is drawn after the layers. Not in the published tier,
-                                  not with PLD_METHOD_FRONT_TAIL */
+                                  beside them: PLD_STAGE_RIMS is drawn after the layers. In the published tier and with
+                                  PLD_METHOD_FRONT_TAIL there is no such stage: the seam of the layers darkens each rim,
+                                  and reads a texture more */
   PLD_FEATURE_LOW_RESOLUTION = 128 /* smoke and its like at a part of the resolution: PLD_STAGE_LOW is drawn last. Its
-                                  layers do not refract, diffuse or hide everything. Not in the published tier,
-                                  not with PLD_METHOD_FRONT_TAIL */
+                                  layers do not refract, diffuse or hide everything. Not in the published tier, which
+                                  keeps no depths to upsample by, not with PLD_METHOD_FRONT_TAIL, whose nearest layer is
+                                  chosen before these are known; `pellucid composite --low-res` has neither */
 } pld_feature;
 
 typedef PLD_ENUM(pld_flag) {
@@ -138,7 +141,8 @@ typedef struct pld_create_info {
   pld_clip clip;
   pld_rows rows;
   uint32_t uniform_binding; /* binding point of the seam's uniform block, while stages are drawn */
-  uint32_t texture_unit;    /* the seam reads this unit and the two after it, while stages are drawn */
+  uint32_t texture_unit;    /* the seam reads this unit and the two after it, while stages are drawn; three after it
+                               with PLD_FEATURE_RIMS in the published tier or with PLD_METHOD_FRONT_TAIL */
 } pld_create_info;
 
 typedef PLD_ENUM(pld_refract) {
@@ -186,7 +190,8 @@ typedef PLD_ENUM(pld_stage) {
   PLD_STAGE_SOLIDS = 0, /* with PLD_FEATURE_SOLIDS: the same geometry, the nearest fragment that hides everything */
   PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth */
   PLD_STAGE_LAYERS = 2, /* all transparent geometry, in any order */
-  PLD_STAGE_RIMS = 3,   /* with PLD_FEATURE_RIMS: the cut-out geometry of the layers, by pldWriteRim() */
+  PLD_STAGE_RIMS = 3,   /* with PLD_FEATURE_RIMS, but for the published tier and PLD_METHOD_FRONT_TAIL: the cut-out geometry of
+                           the layers, by pldWriteRim() */
   PLD_STAGE_LOW = 4     /* with PLD_FEATURE_LOW_RESOLUTION: geometry of its own, on width and height over low_factor;
                            pld_end() upsamples what it leaves, as one layer of every pixel */
 } pld_stage;
@@ -203,7 +208,7 @@ typedef PLD_ENUM(pld_view) {
   PLD_VIEW_SPREAD = 7,       /* D / 64 px */
   PLD_VIEW_CLAMPED = 8,      /* 1 where a sum is as large as its format goes: red colour or weight, green spread or offset */
   PLD_VIEW_SOLID = 9,        /* colour of the nearest solid */
-  /* With PLD_FEATURE_RIMS: */
+  /* With PLD_STAGE_RIMS: */
   PLD_VIEW_RIM_OCCLUSION = 10, /* red: what the opaque pixels beside a rim hide of the light from around; green: the rest,
                                   1 - red; black where no rim is */
   PLD_VIEW_RIM_LOSS = 11,      /* what rims have taken from the layers' light, premultiplied, as the picture would hold it */
