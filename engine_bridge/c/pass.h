@@ -59,7 +59,7 @@ struct pld_pass {
   bool shadowIsFiltered() const;
   int shadowEdge() const;  // as looked up
   int shadowChannels() const { return shadowInfo_.coloured ? 3 : 1; }
-  void setFrame(const pld_frame& frame);
+  void setFrame(const pld_frame& frame, int pixelsATexel);
   void drawPlanarDepth(const pld_frame& frame);
   void openStage(pld_stage stage, GLuint occlusion);
   void clearStage(pld_stage stage);

@@ -141,11 +141,11 @@ pld_status pld_pass::checkFrame(const pld_frame& frame, bool isFirst, GLenum& at
   return PLD_OK;
 }
 
-void pld_pass::setFrame(const pld_frame& frame) {
+void pld_pass::setFrame(const pld_frame& frame, int pixelsATexel) {
   const float halfWidth = 0.5f * static_cast<float>(frame.width), halfHeight = 0.5f * static_cast<float>(frame.height);
   const bool orthographic = isOrthographic(frame.projection);
   // Offsets are in pixels a metre where nothing converges.
-  const float scale = orthographic ? 1.0f / frame.metres_per_unit : 1.0f;
+  const float scale = (orthographic ? 1.0f / frame.metres_per_unit : 1.0f) / static_cast<float>(pixelsATexel);
   const GLfloat block[16] = {frame.metres_per_unit,
                              frame.pre_exposure,
                              orthographic ? 1.0f : 0.0f,
@@ -234,9 +234,9 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   if (const pld_status status = checkFrame(frame, first, attachment); status != PLD_OK) return status;
   const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
   // Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six, layers of low
-  // resolution resolved from ten.
+  // resolution resolved from eleven.
   const auto seamUnit = static_cast<int>(info_.texture_unit);
-  if (saves) saved_.save(gl, {0, std::max(seamUnit + permutation_.seamUnits(), stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 10 : 0)}, static_cast<int>(info_.uniform_binding));
+  if (saves) saved_.save(gl, {0, std::max(seamUnit + permutation_.seamUnits(), stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 11 : 0)}, static_cast<int>(info_.uniform_binding));
   const GLuint target = frameOf(stage);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   frameDepthAttachment_ = stage == PLD_STAGE_SOLIDS || stage == PLD_STAGE_LOW ? 0 : attachment;
@@ -254,7 +254,7 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
     stagesDone_ = 0;
   }
   timers_.mark(gl, Timers::markOf(stage, 0));
-  setFrame(frame);
+  setFrame(frame, stage == PLD_STAGE_LOW ? frame.low_factor : 1);
   if (first && permutation_.planarDepth()) {
     drawPlanarDepth(frame);
     if (saves) saved_.restoreForDraws(gl);

@@ -3,17 +3,17 @@
 
 using namespace pellucid::c;
 
-// Its layers do not scatter, and nothing among them is solid; nearest depths are wanted besides.
+// Nothing among its layers is solid or waits for its occlusion; nearest depths are wanted besides.
 Permutation pld_pass::lowPermutation() const {
   Permutation low = permutation_;
-  low.features &= ~static_cast<uint32_t>(PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS |
-                                         PLD_FEATURE_RIMS);
+  low.atLowResolution = true;
+  low.features &= ~static_cast<uint32_t>(PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS);
   return low;
 }
 
 std::vector<PlaneSpec> pld_pass::lowPlanes() const {
   std::vector<PlaneSpec> planes = planesOf(lowPermutation());
-  planes.push_back(nearestPlane());
+  if (!permutation_.scatters()) planes.push_back(nearestPlane());
   return planes;
 }
 
@@ -27,7 +27,11 @@ std::string pld_pass::buildLowPrograms() {
   if (permutation_.has(PLD_FEATURE_DISPERSION)) upsample.emplace_back("DISPERSION");
   if (permutation_.tier == PLD_TIER_HALF) upsample.emplace_back("HALF");
   std::string failure = lowDepth_.build(gl, "gl/low_depth.frag", solids);
-  if (failure.empty()) failure = lowTexel_.build(gl, "gl/low_texel.frag", resolveDefines(lowPermutation()));
+  // A texel's own light: what it bends and spreads is taken from its sums.
+  std::vector<std::string> texel = resolveDefines(lowPermutation());
+  std::erase(texel, "SCATTER");
+  std::erase(texel, "DISPERSION");
+  if (failure.empty()) failure = lowTexel_.build(gl, "gl/low_texel.frag", texel);
   if (failure.empty()) failure = upsample_.build(gl, "gl/upsample.frag", upsample);
   return failure;
 }
@@ -92,14 +96,17 @@ void pld_pass::addLow() {
   for (GLuint i = 0; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   for (const Plane& plane : planes_) {
     const GLuint i = plane.spec.attachment;
-    if (i > 5) continue;  // scattering
-    gl.ColorMaski(i, GL_TRUE, i < 5, i < 5, i < 5);
+    gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     blend(i, plane.spec.blend);
   }
   for (GLuint i = 0; i < kLowTexels; ++i) bind(i, lowTexels_[i]);
   bind(3, planarZ_);
   if (solid_) bind(4, solid_);
+  constexpr GLuint scatterUnits[] = {6, 7, 5, 8};  // of the planes of targets 4 to 7
+  for (const Plane& plane : low_)
+    if (plane.spec.attachment >= 4 && permutation_.scatters()) bind(scatterUnits[plane.spec.attachment - 4], plane.texture);
   useProgram(upsample_);
+  gl.Uniform1f(upsample_.place(gl, "factor"), static_cast<float>(frame_.low_factor));
   gl.Uniform2i(upsample_.place(gl, "texelCount"), wide, high);
   gl.Uniform1f(upsample_.place(gl, "texelsAPixel"), 1.0f / static_cast<float>(frame_.low_factor));
   gl.DrawArrays(GL_TRIANGLES, 0, 3);

@@ -135,11 +135,11 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("LEAN", p.lean());
   define("HALF", p.tier == PLD_TIER_HALF && (layers || low));
   define("FRONT_TAIL", p.fronts() && layers);
-  define("SCATTER", p.scatters() && layers);
+  define("SCATTER", p.scatters() && (layers || low));
   define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha() && layers);
-  define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && layers);
-  define("DIFFUSES", p.has(PLD_FEATURE_DIFFUSION) && layers);
-  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && layers);
+  define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && (layers || low));
+  define("DIFFUSES", p.has(PLD_FEATURE_DIFFUSION) && (layers || low));
+  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && (layers || low));
   return defines;
 }
 

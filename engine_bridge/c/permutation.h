@@ -14,6 +14,7 @@ struct Permutation {
   pld_weight weight = PLD_WEIGHT_BY_EQ5;
   pld_depth depth = PLD_DEPTH_DEVICE;
   pld_rows rows = PLD_ROWS_UP;
+  bool atLowResolution = false;  // the planes of PLD_STAGE_LOW
   uint32_t fixedFields = 0;  // pld_fixed: of the next, what every frame has
   pld_frame fixed{};
 
@@ -25,8 +26,9 @@ struct Permutation {
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters() || low()); }
   // No layer adds light: half of the sums are not needed.
   bool lean() const { return !published() && !light(); }
-  // The nearest layer that diffuses has a place beside a sum. Not in half floats: it is compared with depths.
-  bool diffuseInAlpha() const { return scatters() && !grey() && tier == PLD_TIER_FLOAT; }
+  // The nearest layer that diffuses has a place beside a sum. Not in half floats: it is compared with depths. Not where the
+  // nearest of all is wanted too.
+  bool diffuseInAlpha() const { return scatters() && !grey() && tier == PLD_TIER_FLOAT && !atLowResolution; }
   bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // From sums of one kind what occlusion hides is taken later; others take rims that are dark already.

@@ -105,7 +105,7 @@ WeightSettings seamWeight() {
 }
 
 // A layer in metres and pixels, for hosts that know its scattering already. What pldWriteFragment() ends in.
-//   offset      float pixels, y down; (0, 0) does not refract
+//   offset      float pixels of the stage, y down; (0, 0) does not refract
 //   variance    s^2, pixels^2
 //   dispersion  offset of red minus `offset`, of blue minus it
 void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, vec2 offset, float variance,

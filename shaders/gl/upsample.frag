@@ -7,9 +7,48 @@ layout(binding = 1) uniform sampler2D opacityTexels;
 layout(binding = 2) uniform sampler2D depthTexels;
 layout(binding = 3) uniform sampler2D opaqueZ;
 layout(binding = 4) uniform sampler2D solid;
+#ifdef SCATTER
+layout(binding = 5) uniform sampler2D refractionTexels;  // the texels' sums, as shaders/gl/sums_output.glsl writes them
+layout(binding = 6) uniform sampler2D lightTexels;
+layout(binding = 7) uniform sampler2D nearestTexels;
+layout(binding = 8) uniform sampler2D dispersionTexels;
+#endif
 
 uniform ivec2 texelCount;
 uniform float texelsAPixel;  // 1 over the factor
+#ifdef SCATTER
+uniform float factor;
+
+// Of the texels around, by their shares.
+vec4 refractionAround = vec4(0.0f), dispersionAround = vec4(0.0f);
+float refractionZAround = 0.0f, diffuseZAround = intBitsToFloat(0x7f800000);
+
+void scatterTexel(ivec2 at, float share) {
+  precise vec4 refraction = refractionAround + share * texelFetch(refractionTexels, at, 0);
+  precise float z = refractionZAround + share * texelFetch(lightTexels, at, 0).a;
+  refractionAround = refraction;
+  refractionZAround = z;
+#ifdef DISPERSION
+  precise vec4 dispersion = dispersionAround + share * texelFetch(dispersionTexels, at, 0);
+  dispersionAround = dispersion;
+#endif
+  if (share > 0.0f) diffuseZAround = min(diffuseZAround, texelFetch(nearestTexels, at, 0).g);
+}
+
+// Offsets and spreads of texels are in texels.
+void writeScatterAround(float shares) {
+  precise vec4 mean = refractionAround / shares;
+  precise vec4 refraction = vec4(factor * mean.x, factor * mean.y, mean.z, factor * factor * mean.w);
+  precise float z = refractionZAround / shares;
+  refractionSum = refraction;
+  lightSum.a = z;
+  writeDiffuseZ(mean.w > 0.0f ? diffuseZAround : intBitsToFloat(0x7f800000));
+#ifdef DISPERSION
+  precise vec4 dispersion = (factor / shares) * dispersionAround;
+  dispersionSum = dispersion;
+#endif
+}
+#endif
 
 LowSums withTexel(LowSums sums, ivec2 at, vec4 depths, float share, float opaque) {
   if (share <= 0.0f) return sums;
@@ -25,7 +64,12 @@ LowSums withTexel(LowSums sums, ivec2 at, vec4 depths, float share, float opaque
   texel.depthWeight = opacity.a;
   texel.z = depths.x;
   texel.nearestZ = depths.y;
-  return addTexel(sums, texel, share, standingBefore(texel, opaque, depths.z));
+  float before = standingBefore(texel, opaque, depths.z);
+#ifdef SCATTER
+  precise float part = share * before;
+  scatterTexel(at, part);
+#endif
+  return addTexel(sums, texel, share, before);
 }
 
 void main() {
@@ -54,14 +98,16 @@ void main() {
         sums = withTexel(sums, ivec2(i, j), depths, wideShare(vec2(float(i), float(j)) - place, opaque, depths.z, wide), opaque);
       }
   LowLayer layer = lowLayerOf(sums);
-  if (!layer.shows) discard;
-  writeOitSums(lowLayerSums(layer, NORMALISATION), sums.nearestZ);
+  bool bends = false;
 #ifdef SCATTER
-  writeDiffuseZ(intBitsToFloat(0x7f800000));
-  refractionSum = vec4(0.0f);
+  bends = refractionAround.z > 0.0f || refractionAround.w > 0.0f;
 #endif
-#ifdef DISPERSION
-  dispersionSum = vec4(0.0f);
+  if (!layer.shows && !bends) discard;
+  OitSums added = lowLayerSums(layer, NORMALISATION);
+  if (!layer.shows) added.count = 0.0f;
+  writeOitSums(added, sums.nearestZ);
+#ifdef SCATTER
+  writeScatterAround(sums.share);
 #endif
 #ifdef HALF
   clampToHalf();

@@ -21,6 +21,7 @@ struct Wanted {
   const char* what;
   bool coloured, refracts, diffuses, solids;
   int factor;
+  bool disperses = false;
 };
 
 FragmentLists listsOf(const Window& window, Random& random, const Wanted& wanted, bool low, const Image<float>& opaqueZ) {
@@ -39,9 +40,12 @@ FragmentLists listsOf(const Window& window, Random& random, const Wanted& wanted
         one.transmission = wanted.coloured ? glm::vec3(random.uniformf(), random.uniformf(), grey) : glm::vec3(.9f * grey);
         one.radiance = glm::vec3(random.uniformf(), 4 * random.uniformf(), .1f);
         one.z = 1.5f + 3.0f * random.uniformf();
-        if (!low && wanted.refracts && random.below(2)) one.offset = glm::vec2(10 * random.uniformf() - 5, 8 * random.uniformf() - 4);
-        if (!low && wanted.diffuses && random.below(3) == 0) one.variance = 20.0f * random.uniformf();
-        if (one.z <= opaqueZ.at(x, y)) lists.fragments.push_back(one);
+        if (wanted.refracts && random.below(2)) one.offset = glm::vec2(10 * random.uniformf() - 5, 8 * random.uniformf() - 4);
+        if (wanted.diffuses && random.below(3) == 0) one.variance = 20.0f * random.uniformf() / static_cast<float>(low ? wanted.factor * wanted.factor : 1);
+        if (random.below(16) == 0) one.transmission = glm::vec3(1), one.radiance = glm::vec3(0);  // bends and spreads unseen
+        if (one.z > opaqueZ.at(x, y)) continue;
+        lists.fragments.push_back(one);
+        if (wanted.disperses) lists.dispersion.emplace_back(random.uniformf(), -.5f, .25f * random.uniformf(), .5f);
       }
       if (!low && wanted.solids && random.below(4) == 0) {
         Fragment solid{};
@@ -49,6 +53,7 @@ FragmentLists listsOf(const Window& window, Random& random, const Wanted& wanted
         solid.coverage = 1.0f;
         solid.z = 1.2f + .2f * random.uniformf();
         lists.fragments.push_back(solid);
+        if (wanted.disperses) lists.dispersion.emplace_back(0.0f);
         lists.solid.at(x, y) = glm::vec4(solid.radiance, solid.z);
       }
       lists.offsets.push_back(lists.fragments.size());
@@ -68,7 +73,9 @@ TEST(BridgeLow, UpsampledLayersAreThoseOfTheRooms) {
   for (const Wanted& wanted : {Wanted{"coloured, 1/2", true, false, false, false, 2}, Wanted{"coloured, solids, 1/4", true, false, false, true, 4},
                                Wanted{"coloured, 1/8", true, false, false, false, 8}, Wanted{"grey, 1/4", false, false, false, false, 4},
                                Wanted{"grey, refraction, diffusion, solids, 1/2", false, true, true, true, 2},
-                               Wanted{"coloured, refraction, diffusion, 1/4", true, true, true, false, 4}}) {
+                               Wanted{"coloured, refraction, diffusion, 1/4", true, true, true, false, 4},
+                               Wanted{"grey, refraction, 1/8", false, true, false, false, 8},
+                               Wanted{"coloured, refraction, dispersion, diffusion, solids, 1/2", true, true, true, true, 2, true}}) {
     Random random(5);
     GBuffer gbuffer;
     gbuffer.display = gbuffer.data = {0, 0, kWidth, kHeight};
@@ -97,6 +104,7 @@ TEST(BridgeLow, UpsampledLayersAreThoseOfTheRooms) {
     if (wanted.refracts) info.features |= PLD_FEATURE_REFRACTION;
     if (wanted.diffuses) info.features |= PLD_FEATURE_DIFFUSION;
     if (wanted.solids) info.features |= PLD_FEATURE_SOLIDS;
+    if (wanted.disperses) info.features |= PLD_FEATURE_DISPERSION;
     pld_pass* pass = host.create(info);
     ASSERT_NE(pass, nullptr);
     pld_frame frame = host.frame();
@@ -167,6 +175,82 @@ TEST(BridgeLow, AnEvenVeilIsItselfAtEveryFactor) {
     EXPECT_LT(worst, 1e-6);
   }
   EXPECT_NE(pictures[0][0], 0.5f);
+}
+
+// And so is an even pane that refracts and diffuses what stands behind it: its offset and spread are of pixels, whatever a
+// texel is.
+TEST(BridgeLow, AnEvenPaneScattersAlikeAtEveryFactor) {
+  GlContext context;
+  for (const uint32_t features : {uint32_t{PLD_FEATURE_REFRACTION}, uint32_t{PLD_FEATURE_DIFFUSION},
+                                  uint32_t{PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION | PLD_FEATURE_DISPERSION | PLD_FEATURE_DIFFUSION}})
+    for (const int how : {0, 1, 2}) {
+      const bool orthographic = how == 1, half = how == 2;
+      std::vector<float> pictures[4], background;
+      const int factors[] = {1, 2, 4, 8};
+      for (int k = 0; k < 4; ++k) {
+        Host host(kWidth, kHeight);
+        std::vector<float> wave;
+        for (int i = 0; i < kWidth * kHeight; ++i) {
+          const auto x = static_cast<float>(i % kWidth), y = static_cast<float>(i / kWidth);
+          for (const float c : {.5f + .5f * std::sin(.4f * x), .5f + .5f * std::sin(.3f * y), .5f + .5f * std::sin(.2f * (x + y)), 1.0f}) wave.push_back(c);
+        }
+        fillTexture(host.colour, kWidth, kHeight, GL_RGBA, wave.data());
+        background = wave;
+        pld_create_info info = host.info();
+        info.features = features | PLD_FEATURE_LOW_RESOLUTION;
+        info.tier = half ? PLD_TIER_HALF : PLD_TIER_FLOAT;
+        pld_pass* pass = host.create(info);
+        ASSERT_NE(pass, nullptr);
+        GLuint array = 0;
+        glCreateVertexArrays(1, &array);
+        pld_frame frame = host.frame();
+        frame.low_factor = factors[std::max(k, 1)];
+        frame.refract = PLD_REFRACT_AT_DISTANCE;
+        frame.diffusion_k0 = .2f;
+        if (orthographic) {
+          frame.projection[0] = .25f * static_cast<float>(kHeight) / static_cast<float>(kWidth);
+          frame.projection[5] = .25f;
+          frame.projection[10] = -.1f;
+          frame.projection[11] = 0;
+          frame.projection[14] = 0;
+          frame.projection[15] = 1;
+        }
+        for (const pld_stage stage : {PLD_STAGE_LAYERS, PLD_STAGE_LOW}) {
+          const char* seam = nullptr;
+          ASSERT_EQ(pld_glsl(pass, stage, 450, &seam), PLD_OK) << pld_message(pass);
+          const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 450 core\n") + seam +
+                                                                    "void main() {\n"
+                                                                    "  PldSurface pane = pldSurface(vec3(0.02), 0.75, vec3(0.9), vec3(0.25, 0.125, -3.0));\n"
+                                                                    "  pane.normal = normalize(vec3(0.2, 0.3, 1.0));\n"
+                                                                    "  pane.eta = 1.0 / 1.3;\n"
+                                                                    "  pane.etaRedBlue = vec2(1.0 / 1.28, 1.0 / 1.32);\n"
+                                                                    "  pane.collimation = 0.5;\n"
+                                                                    "  pldWriteFragment(pane);\n"
+                                                                    "}\n");
+          ASSERT_EQ(pld_connect(pass, program), PLD_OK);
+          ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+          glBindVertexArray(array);
+          glUseProgram(program);
+          if ((stage == PLD_STAGE_LAYERS) == (k == 0)) glDrawArrays(GL_TRIANGLES, 0, 3);
+          ASSERT_EQ(pld_end(pass), PLD_OK);
+          glDeleteProgram(program);
+        }
+        pictures[k] = host.finish(pass);
+      }
+      double moved = 0;  // beside the same pane without scattering
+      for (std::size_t i = 0; i < background.size(); i += 4)
+        moved = std::max(moved, std::abs(static_cast<double>(pictures[0][i]) - (.02 + .925 * static_cast<double>(background[i]))));
+      for (int k = 1; k < 4; ++k) {
+        double worst = 0;
+        for (std::size_t i = 0; i < pictures[0].size(); ++i)
+          worst = std::max(worst, std::abs(static_cast<double>(pictures[0][i]) - static_cast<double>(pictures[k][i])));
+        std::printf("an even pane at 1/%d, features %u%s: off by at most %.2g where it moves things by up to %.2g\n", factors[k], features,
+                    orthographic ? ", orthographic" : half ? ", half" : "", worst, moved);
+        EXPECT_GT(moved, .02);
+        // The upsampled offset, rounded, times the background's slope; halves round sums of 10 px and less by 2^-8.
+        EXPECT_LT(worst, half ? .004 : 2e-5);
+      }
+    }
 }
 
 TEST(BridgeLow, WrongFactorsAreRefused) {

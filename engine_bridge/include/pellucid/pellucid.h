@@ -17,7 +17,7 @@
 
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR 4 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,
-                               rims in the published tier and with PLD_METHOD_FRONT_TAIL.
+                               rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters.
                                A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -90,7 +90,7 @@ typedef PLD_ENUM(pld_feature) {
                                   PLD_METHOD_FRONT_TAIL there is no such stage: the seam of the layers darkens each rim,
                                   and reads a texture more */
   PLD_FEATURE_LOW_RESOLUTION = 128 /* smoke and its like at a part of the resolution: PLD_STAGE_LOW is drawn last. Its
-                                  layers do not refract, diffuse or hide everything. Not in the published tier, which
+                                  layers do not hide everything. Not in the published tier, which
                                   keeps no depths to upsample by, not with PLD_METHOD_FRONT_TAIL, whose nearest layer is
                                   chosen before these are known; `pellucid composite --low-res` has neither */
 } pld_feature;
