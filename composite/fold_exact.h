@@ -5,10 +5,9 @@
 
 namespace pellucid {
 
-// As foldFragments(), but each pixel's terms are added in an order that all bits of the fragments decide, in long
-// double, and rounded once. The lists must hold every fragment of their pixels: sums already in the planes are
-// replaced. Bits are the same for every order of the lists; each plane lies within a rounding of float of the true sum
-// of its terms.
+// As foldFragments(), but each pixel's terms are added by shaders/shared/exact_sums.glsl, whose additions are exact, and
+// rounded once. The lists must hold every fragment of their pixels: sums already in the planes are replaced. Bits are the
+// same for every order of the lists; each plane is the true sum of its terms, rounded to float.
 void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation, OitPlanes& planes);
 
 }  // namespace pellucid

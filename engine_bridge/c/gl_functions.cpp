@@ -64,6 +64,11 @@ std::string load(pld_get_proc_address get, void* user, GlFunctions& gl) {
   later(gl.core && (gl.version >= 45 || has(gl, "GL_ARB_direct_state_access")), "glGetTextureParameteriv",
         gl.GetTextureParameteriv);
   later(gl.version >= 45 || has(gl, "GL_ARB_texture_barrier"), "glTextureBarrier", gl.TextureBarrier);
+  const bool lists = gl.version >= 43;
+  later(lists, "glClearBufferSubData", gl.ClearBufferSubData);
+  later(lists, "glGetBufferSubData", gl.GetBufferSubData);
+  later(lists, "glGetInteger64v", gl.GetInteger64v);
+  later(lists, "glMemoryBarrier", gl.MemoryBarrier);
   later(debug, "glGetObjectLabel", gl.GetObjectLabel);
   later(debug, "glObjectLabel", gl.ObjectLabel);
   later(debug, "glPushDebugGroup", gl.PushDebugGroup);

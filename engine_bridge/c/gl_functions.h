@@ -97,9 +97,13 @@ namespace pellucid::c {
 #define PLD_GL_OPTIONAL(X)                                     \
   X(BlendEquationSeparatei, PFNGLBLENDEQUATIONSEPARATEIPROC)   \
   X(BlendFuncSeparatei, PFNGLBLENDFUNCSEPARATEIPROC)           \
+  X(ClearBufferSubData, PFNGLCLEARBUFFERSUBDATAPROC)           \
+  X(GetBufferSubData, PFNGLGETBUFFERSUBDATAPROC)               \
+  X(GetInteger64v, PFNGLGETINTEGER64VPROC)                     \
   X(GetFloati_v, PFNGLGETFLOATI_VPROC)                         \
   X(GetObjectLabel, PFNGLGETOBJECTLABELPROC)                   \
   X(GetTextureParameteriv, PFNGLGETTEXTUREPARAMETERIVPROC)     \
+  X(MemoryBarrier, PFNGLMEMORYBARRIERPROC)                     \
   X(ObjectLabel, PFNGLOBJECTLABELPROC)                         \
   X(PopDebugGroup, PFNGLPOPDEBUGGROUPPROC)                     \
   X(PushDebugGroup, PFNGLPUSHDEBUGGROUPPROC)                   \

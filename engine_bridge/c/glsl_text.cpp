@@ -47,6 +47,10 @@ std::set<std::string> declaredIn(const std::string& text) {
   return names;
 }
 
+std::string storageLayout(int binding) {
+  return "layout(std430, binding = " + std::to_string(binding) + ")";
+}
+
 std::string withoutPreciseBelow400(const std::string& word, int version) {
   return version < 400 && word == "precise" ? std::string() : word;
 }
@@ -80,6 +84,7 @@ std::string hostText(const std::string& file, const std::vector<std::string>& de
     if (word == "PLD_FN") return {};
     if (word == "PLD_FRAME_LAYOUT")
       return places ? "layout(std140, binding = " + std::to_string(at.uniformBinding) + ")" : "layout(std140)";
+    if (word.rfind("PLD_STORAGE_", 0) == 0) return storageLayout(at.firstStorage + word.back() - '0');
     if (word == "PLD_UNIT_0") return unit(0);
     if (word == "PLD_UNIT_1") return unit(1);
     if (word == "PLD_UNIT_2") return unit(2);
@@ -113,10 +118,16 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
   return own;
 }
 
+std::vector<std::string> storageDefines(int first) {
+  std::vector<std::string> defines;
+  for (int i = 0; i < kListBlocks; ++i) defines.push_back("PLD_STORAGE_" + std::to_string(i) + " " + storageLayout(first + i));
+  return defines;
+}
+
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
   return hostText("gl/seam.glsl", seamDefines(permutation, stage),
                   {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "DIFFUSE_IN_ALPHA", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
-                   "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "RIMS_HERE", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
+                   "EXACT", "LISTS_OFFSETS", "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "RIMS_HERE", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
                    "ROWS", "UNITS", "EXPOSURE", "ORTHOGRAPHIC", "RANGE_NEAR", "RANGE_FAR", "EXPONENT", "REFRACT", "REFRACT_DISTANCE",
                    "DIFFUSION_K0", "DIFFUSION_K1"},
                   version, places, {"PLD_SEAM", "pld_", ""});

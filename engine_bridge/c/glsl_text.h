@@ -22,8 +22,12 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
 
 // Where a host's program finds what the library binds, or has it bind.
 struct SeamPlaces {
-  int uniformBinding, firstUnit;
+  int uniformBinding, firstUnit, firstStorage = 0;
 };
+
+// What shaders/gl/exact_lists.glsl looks for: its blocks at storage bindings `first` and after.
+constexpr int kListBlocks = 5;
+std::vector<std::string> storageDefines(int first);
 
 // Texts for hosts, without a #version line. Names that the host does not call begin with pld_, so that they meet none of
 // its own; a shader may hold several of the texts.

@@ -36,7 +36,7 @@ bool pld_pass::isCurrent() const {
 uint32_t pld_pass::stagesNeeded() const {
   return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) | (permutation_.rimsApart() ? 1u << PLD_STAGE_RIMS : 0u) |
          (permutation_.low() ? 1u << PLD_STAGE_LOW : 0u) |
-         (permutation_.fronts() ? 1u << PLD_STAGE_FRONT : 0u) | 1u << PLD_STAGE_LAYERS;
+         (permutation_.frontStage() ? 1u << PLD_STAGE_FRONT : 0u) | 1u << PLD_STAGE_LAYERS;
 }
 
 Units pld_pass::unitsOf() const {
@@ -71,6 +71,7 @@ pld_status pld_pass::makePrograms() {
   if (permutation_.rimsApart()) build(rimsApply_, "gl/rims_apply.frag", defines);
   if (permutation_.low() && failure.empty()) failure = buildLowPrograms();
   if (failure.empty()) failure = buildViewPrograms();
+  if (permutation_.exact() && failure.empty()) failure = buildFolds();
   return failure.empty() ? PLD_OK : fail(PLD_ERROR_INTERNAL, "%s", failure.c_str());
 }
 
@@ -100,6 +101,8 @@ pld_status pld_pass::create(const pld_create_info& info) {
                 info.uniform_binding, info.texture_unit, bindings, lastUnit);
   if (drawBuffers < kDrawBuffers)
     return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d draw buffers, expected %d", drawBuffers, kDrawBuffers);
+  if (permutation_.exact())
+    if (const pld_status status = checkLists(info); status != PLD_OK) return status;
   while (const GLenum pending = gl.GetError()) {
     char text[100];
     std::snprintf(text, sizeof(text), "pld_create: a GL error of the host was pending: 0x%x", pending);
@@ -148,6 +151,7 @@ void pld_pass::destroyObjects() {
   timers_.destroy(gl);
   for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_, &lowTexel_, &upsample_, &viewRims_, &viewLow_})
     program->destroy(gl);
+  for (Program& program : folds_) program.destroy(gl);
   for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
                         &lowDepthFrame_, &lowTexelFrame_, &targetFrame_})
     if (*frame) gl.DeleteFramebuffers(1, frame);
@@ -169,7 +173,7 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
       value = planes_.size();
       return PLD_OK;
     case PLD_VALUE_GEOMETRY_PASSES:
-      value = 1u + (permutation_.fronts() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (permutation_.rimsApart() ? 1u : 0u);
+      value = 1u + (permutation_.frontStage() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (permutation_.rimsApart() ? 1u : 0u);
       return PLD_OK;
     case PLD_VALUE_NS_BEGIN:
     case PLD_VALUE_NS_DRAWS:
@@ -180,6 +184,11 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
     case PLD_VALUE_NS_SHADOW:
       if (!timers_.on()) return fail(PLD_ERROR_UNSUPPORTED, "pld_query: times need PLD_FLAG_TIMERS");
       if (!timers_.readFace(gl, value)) return fail(PLD_ERROR_ORDER, "pld_query: no face's time is known yet");
+      return PLD_OK;
+    case PLD_VALUE_FRAGMENTS:
+    case PLD_VALUE_FRAGMENT_ROOM:
+      if (!permutation_.exact()) return fail(PLD_ERROR_UNSUPPORTED, "pld_query: fragments are counted in PLD_TIER_EXACT alone");
+      value = what == PLD_VALUE_FRAGMENTS ? fragments_ : room_;
       return PLD_OK;
     case PLD_VALUE_SHADOW_TEXTURE:
       value = shadowMaps_;
@@ -213,8 +222,10 @@ pld_status pld_pass::seam(pld_stage stage, int version, const char*& text) {
   if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LOW || !(stagesNeeded() & (1u << stage)))
     return fail(PLD_ERROR_ARGUMENT, "pld_glsl: this pass has no stage %d", static_cast<int>(stage));
   if (const pld_status status = checkGlsl("pld_glsl", version); status != PLD_OK) return status;
+  if (permutation_.exact() && version < 430)
+    return fail(PLD_ERROR_UNSUPPORTED, "pld_glsl: found version %d, expected 430 or later: the exact tier writes to storage buffers", version);
   std::string& kept = seams_[stage];
-  kept = seamText(permutation_, stage, version, {static_cast<int>(info_.uniform_binding), static_cast<int>(info_.texture_unit)});
+  kept = seamText(permutation_, stage, version, {static_cast<int>(info_.uniform_binding), static_cast<int>(info_.texture_unit), static_cast<int>(info_.storage_binding)});
   text = kept.c_str();
   return PLD_OK;
 }

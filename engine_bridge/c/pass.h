@@ -64,6 +64,15 @@ struct pld_pass {
   void openStage(pld_stage stage, GLuint occlusion);
   void clearStage(pld_stage stage);
   void drawPyramid();
+  pld_status checkLists(const pld_create_info& info);
+  std::string buildFolds();
+  pld_status makeLists(int width, int height);
+  void releaseLists();
+  void openLists();
+  void bindLists();
+  pld_status foldLists();
+  int listBlocks() const;
+  pellucid::c::Storage storageOf() const;  // bindings that stages take
   pld_status darkenRims();
   GLuint frameOf(pld_stage stage) const;
   void blend(GLuint attachment, pellucid::c::BlendKind kind);
@@ -109,6 +118,10 @@ struct pld_pass {
   GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {}, lowFarZ_ = 0, lowTexels_[kLowTexels] = {};
   GLint levels_[kLevels][4] = {};
   int levelCount_ = 0, atlasWidth_ = 0, atlasHeight_ = 0;
+  // Exact tier: blocks of shaders/gl/exact_lists.glsl, what each stage's are folded by, and fragments of the newest frame.
+  GLuint lists_[pellucid::c::kMostStorage] = {};
+  pellucid::c::Program folds_[kStages];
+  uint64_t room_ = 0, fragments_ = 0;
   uint64_t bytes_ = 0;
   int width_ = 0, height_ = 0;
   char label_[64] = {};

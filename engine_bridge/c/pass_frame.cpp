@@ -153,7 +153,7 @@ void pld_pass::setFrame(const pld_frame& frame, int pixelsATexel) {
                              frame.weight_near,
                              frame.weight_far,
                              frame.weight_exponent,
-                             0.0f,
+                             static_cast<float>(width_),
                              static_cast<float>(frame.refract),
                              frame.refract_distance,
                              std::fabs(frame.projection[0]) * halfWidth * scale,
@@ -209,14 +209,16 @@ void pld_pass::blend(GLuint i, BlendKind kind) {
 }
 
 void pld_pass::openStage(pld_stage stage, GLuint occlusion) {
-  if (stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW)
+  if (permutation_.exact())
+    openLists();
+  else if (stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW)
     for (const Plane& plane : stage == PLD_STAGE_LOW ? low_ : planes_) blend(plane.spec.attachment, plane.spec.blend);
   if (stage == PLD_STAGE_FRONT) blend(0, BlendKind::minimum);
-  for (GLuint i = 0; stage == PLD_STAGE_RIMS && i < kRimPlanes; ++i) blend(i, BlendKind::add);
-  if (stage == PLD_STAGE_SOLIDS) {
+  for (GLuint i = 0; stage == PLD_STAGE_RIMS && !permutation_.exact() && i < kRimPlanes; ++i) blend(i, BlendKind::add);
+  if (stage == PLD_STAGE_SOLIDS && !permutation_.exact()) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_GREATER);
-  } else if (permutation_.depth != PLD_DEPTH_LINEAR && stage != PLD_STAGE_LOW) {
+  } else if (permutation_.depth != PLD_DEPTH_LINEAR && stage != PLD_STAGE_LOW && stage != PLD_STAGE_SOLIDS) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(permutation_.depth == PLD_DEPTH_REVERSED ? GL_GEQUAL : GL_LEQUAL);
   }
@@ -236,7 +238,9 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   // Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six, layers of low
   // resolution resolved from eleven.
   const auto seamUnit = static_cast<int>(info_.texture_unit);
-  if (saves) saved_.save(gl, {0, std::max(seamUnit + permutation_.seamUnits(), stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 11 : 0)}, static_cast<int>(info_.uniform_binding));
+  if (saves)
+    saved_.save(gl, {0, std::max(seamUnit + permutation_.seamUnits(), stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 11 : 0)},
+                static_cast<int>(info_.uniform_binding), storageOf());
   const GLuint target = frameOf(stage);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   frameDepthAttachment_ = stage == PLD_STAGE_SOLIDS || stage == PLD_STAGE_LOW ? 0 : attachment;
@@ -252,6 +256,7 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   if (first) {
     timers_.nextFrame();
     stagesDone_ = 0;
+    fragments_ = 0;
   }
   timers_.mark(gl, Timers::markOf(stage, 0));
   setFrame(frame, stage == PLD_STAGE_LOW ? frame.low_factor : 1);
@@ -267,7 +272,7 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   }
   setAccumulation(gl, frame.width / (low ? frame.low_factor : 1), frame.height / (low ? frame.low_factor : 1));
-  clearStage(stage);
+  if (!permutation_.exact()) clearStage(stage);
   openStage(stage, frame.occlusion_texture);
   if (saves) saved_.restoreActiveUnit(gl);
   timers_.mark(gl, Timers::markOf(stage, 1));
@@ -324,12 +329,14 @@ pld_status pld_pass::end() {
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frameOf(stage_));
     gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, frameDepthAttachment_, GL_TEXTURE_2D, 0, 0);
   }
-  const pld_status status = stage_ == PLD_STAGE_RIMS ? darkenRims() : PLD_OK;
-  if (stage_ == PLD_STAGE_LOW) addLow();
+  pld_status status = permutation_.exact() ? foldLists() : PLD_OK;
+  const bool whole = status == PLD_OK;
+  if (whole && stage_ == PLD_STAGE_RIMS) status = darkenRims();
+  if (whole && stage_ == PLD_STAGE_LOW) addLow();
   timers_.mark(gl, Timers::markOf(stage_, 2));
   if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
   popGroup();
-  stagesDone_ |= 1u << stage_;
+  if (whole) stagesDone_ |= 1u << stage_;
   step_ = Step::drawn;
   return status;
 }

@@ -32,6 +32,7 @@ void pld_pass::releaseTextures() {
   for (Plane& plane : low_) release(plane.texture);
   for (GLuint& one : lowTexels_) release(one);
   release(lowFarZ_);
+  releaseLists();
   bytes_ = 0;
   width_ = height_ = 0;
 }
@@ -76,16 +77,18 @@ pld_status pld_pass::makeTextures(int width, int height) {
     attach(planarFrame_, GL_COLOR_ATTACHMENT0, planarZ_);
     check();
   }
-  if (permutation_.fronts()) {
+  if (permutation_.frontStage()) {
     frontZ_ = makeTexture(GL_R32F, width, height, 32);
     attach(frontFrame_, GL_COLOR_ATTACHMENT0, frontZ_);
     check();
   }
   if (permutation_.has(PLD_FEATURE_SOLIDS)) {
     solid_ = makeTexture(GL_RGBA32F, width, height, 128);
-    solidDepth_ = makeTexture(GL_DEPTH_COMPONENT32F, width, height, 32);
     attach(solidFrame_, GL_COLOR_ATTACHMENT0, solid_);
-    attach(solidFrame_, GL_DEPTH_ATTACHMENT, solidDepth_);
+    if (!permutation_.exact()) {
+      solidDepth_ = makeTexture(GL_DEPTH_COMPONENT32F, width, height, 32);
+      attach(solidFrame_, GL_DEPTH_ATTACHMENT, solidDepth_);
+    }
     check();
   }
   if (permutation_.low()) complete = makeLowTextures(width, height) && complete;
@@ -110,8 +113,8 @@ pld_status pld_pass::makeTextures(int width, int height) {
     gl.DrawBuffers(kSpreadPlanes, all);
     check();
   }
-  return complete ? PLD_OK
-                  : fail(PLD_ERROR_UNSUPPORTED, "pld_resize: this device cannot draw to the planes of this tier at once");
+  if (!complete) return fail(PLD_ERROR_UNSUPPORTED, "pld_resize: this device cannot draw to the planes of this tier at once");
+  return permutation_.exact() ? makeLists(width, height) : PLD_OK;
 }
 
 pld_status pld_pass::resize(int width, int height) {
@@ -128,7 +131,7 @@ pld_status pld_pass::resize(int width, int height) {
     say(PLD_LOG_WARNING, text);
   }
   SavedState state;
-  state.save(gl, {0, 1}, -1);
+  state.save(gl, {0, 1}, -1, permutation_.exact() ? Storage{0, 0} : Storage{});
   GLint unpack = 0;
   gl.GetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &unpack);
   gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);

@@ -35,9 +35,16 @@ pld_status refuse(const pld_create_info& info, pld_status status, const char* te
   return status;
 }
 
+// Before 0.4 it ended before fragments_per_pixel.
+pld_status wholeInfo(const pld_create_info& info, pld_create_info& whole) {
+  if (info.struct_size != offsetof(pld_create_info, fragments_per_pixel) && info.struct_size != sizeof(pld_create_info))
+    return PLD_ERROR_VERSION;  // its log may lie elsewhere
+  std::memcpy(&whole, &info, info.struct_size);
+  return PLD_OK;
+}
+
 pld_status checkInfo(const pld_create_info& info) {
   char text[200];
-  if (info.struct_size != sizeof(pld_create_info)) return PLD_ERROR_VERSION;  // its log may lie elsewhere
   // Structures that have grown since keep the size by which they are known.
   if (info.version >> 20 != PLD_VERSION_MAJOR || ((info.version >> 10) & 1023u) > PLD_VERSION_MINOR) {
     std::snprintf(text, sizeof(text), "pld_create: version: found %u.%u, expected %d.0 to %d.%d", info.version >> 20,
@@ -92,16 +99,18 @@ pld_status pld_create(const pld_create_info* info, pld_pass** pass) {
   if (!pass) return PLD_ERROR_ARGUMENT;
   *pass = nullptr;
   if (!info) return PLD_ERROR_ARGUMENT;
-  if (const pld_status status = checkInfo(*info); status != PLD_OK) return status;
+  pld_create_info whole{};
+  if (const pld_status status = wholeInfo(*info, whole); status != PLD_OK) return status;
+  if (const pld_status status = checkInfo(whole); status != PLD_OK) return status;
   pld_pass* made = nullptr;
   pld_status status = PLD_ERROR_MEMORY;
   try {
     made = new pld_pass;
-    status = made->create(*info);
+    status = made->create(whole);
   } catch (const std::bad_alloc&) {
-    status = refuse(*info, PLD_ERROR_MEMORY, "pld_create: out of memory");
+    status = refuse(whole, PLD_ERROR_MEMORY, "pld_create: out of memory");
   } catch (const std::exception& mistake) {
-    status = refuse(*info, PLD_ERROR_INTERNAL, mistake.what());
+    status = refuse(whole, PLD_ERROR_INTERNAL, mistake.what());
   } catch (...) {
     status = PLD_ERROR_INTERNAL;
   }

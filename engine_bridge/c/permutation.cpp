@@ -44,9 +44,6 @@ bool isOrthographic(const float* p) {
 }
 
 std::string conflictOf(const Permutation& p) {
-  if (p.tier == PLD_TIER_EXACT)
-    return "tier: found PLD_TIER_EXACT, expected float, half or published: bits that no order changes need fragment "
-           "lists, which the offline program has";
   if (p.published() && p.fronts()) return "tier: found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, expected float or half";
   if (p.published() && p.has(PLD_FEATURE_DISPERSION))
     return "features: found PLD_FEATURE_DISPERSION in PLD_TIER_PUBLISHED, which holds one offset for all channels";
@@ -129,17 +126,40 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("RIMS_HERE", p.rimsInSeam() && layers);
   define("DEPTH_IN_SHADER", p.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS || low);
   define("SOLIDS", stage != PLD_STAGE_SOLIDS && !low && p.has(PLD_FEATURE_SOLIDS));
+  define("EXACT", p.exact());
+  define("LISTS_OFFSETS", p.exact() && listsOffsets(p, stage));
   define("PUBLISHED", p.published());
   define("UNCOUNTED", p.published());
   define("GREY", p.grey());
   define("LEAN", p.lean());
   define("HALF", p.tier == PLD_TIER_HALF && (layers || low));
-  define("FRONT_TAIL", p.fronts() && layers);
+  define("FRONT_TAIL", p.frontStage() && layers);
   define("SCATTER", p.scatters() && (layers || low));
   define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha() && layers);
   define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && (layers || low));
   define("DIFFUSES", p.has(PLD_FEATURE_DIFFUSION) && (layers || low));
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && (layers || low));
+  return defines;
+}
+
+bool listsOffsets(const Permutation& p, pld_stage stage) {
+  return stage == PLD_STAGE_RIMS || (stage != PLD_STAGE_SOLIDS && p.scatters());
+}
+
+std::vector<std::string> foldDefines(const Permutation& p, pld_stage stage) {
+  std::vector<std::string> defines{"WEIGHT " + std::to_string(static_cast<int>(p.weight)), "NORMALISATION 0"};
+  const auto define = [&](const char* name, bool wanted) {
+    if (wanted) defines.emplace_back(name);
+  };
+  const bool layers = stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW;
+  define("STAGE_RIMS", stage == PLD_STAGE_RIMS);
+  define("LISTS_OFFSETS", listsOffsets(p, stage));
+  define("GREY", p.grey());
+  define("LEAN", p.lean());
+  define("FRONT_TAIL", p.fronts() && layers);
+  define("SCATTER", p.scatters() && layers);
+  define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha() && layers);
+  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && layers);
   return defines;
 }
 
@@ -154,7 +174,7 @@ std::vector<std::string> resolveDefines(const Permutation& p) {
   define("PUBLISHED", p.published());
   define("GREY", p.grey());
   define("LEAN", p.lean());
-  define("HALF_SUMS", p.tier != PLD_TIER_FLOAT);
+  define("HALF_SUMS", !p.inFloats());
   define("FRONT_TAIL", p.fronts());
   define("SCATTER", p.scatters());
   define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha());

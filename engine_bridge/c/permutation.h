@@ -21,6 +21,11 @@ struct Permutation {
   bool has(pld_feature feature) const { return (features & static_cast<uint32_t>(feature)) != 0; }
   bool scatters() const { return has(PLD_FEATURE_REFRACTION) || has(PLD_FEATURE_DIFFUSION); }
   bool fronts() const { return method == PLD_METHOD_FRONT_TAIL; }
+  // Fragments are listed and summed at the end of a stage, not blended.
+  bool exact() const { return tier == PLD_TIER_EXACT; }
+  bool inFloats() const { return tier == PLD_TIER_FLOAT || exact(); }
+  // Whether the nearest layer is drawn apart; lists know it.
+  bool frontStage() const { return fronts() && !exact(); }
   bool published() const { return tier == PLD_TIER_PUBLISHED; }
   bool grey() const { return !published() && !has(PLD_FEATURE_COLOURED); }
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters() || low()); }
@@ -28,7 +33,7 @@ struct Permutation {
   bool lean() const { return !published() && !light(); }
   // The nearest layer that diffuses has a place beside a sum. Not in half floats: it is compared with depths. Not where the
   // nearest of all is wanted too.
-  bool diffuseInAlpha() const { return scatters() && !grey() && tier == PLD_TIER_FLOAT && !atLowResolution; }
+  bool diffuseInAlpha() const { return scatters() && !grey() && inFloats() && !atLowResolution; }
   bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // From sums of one kind what occlusion hides is taken later; others take rims that are dark already.
@@ -64,5 +69,8 @@ PlaneSpec nearestPlane();  // of low-resolution layers besides
 // Defines of shaders/gl/seam.glsl for a stage; of resolve_here.glsl.
 std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);
 std::vector<std::string> resolveDefines(const Permutation& permutation);
+// Of the exact tier: which blocks a stage's lists have, from block 0 without a gap; defines of shaders/gl/exact_fold.frag.
+bool listsOffsets(const Permutation& permutation, pld_stage stage);
+std::vector<std::string> foldDefines(const Permutation& permutation, pld_stage stage);
 
 }  // namespace pellucid::c

@@ -22,7 +22,7 @@ std::string attach(const GlFunctions& gl, GLuint program, GLenum kind, const std
 }  // namespace
 
 std::string Program::build(const GlFunctions& gl, const std::string& file, const std::vector<std::string>& defines) {
-  const int version = gl.version >= 45 ? 450 : gl.version >= 40 ? 400 : 330;
+  const int version = gl.version >= 45 ? 450 : gl.version >= 43 ? 430 : gl.version >= 40 ? 400 : 330;
   const OwnText stage = ownText(file, defines, version);
   name = gl.CreateProgram();
   std::string failure = attach(gl, name, GL_VERTEX_SHADER, ownText("gl/fullscreen.vert", {}, version).text);

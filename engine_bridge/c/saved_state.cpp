@@ -47,8 +47,25 @@ GLint get(const GlFunctions& gl, GLenum what, int index) {
 
 }  // namespace
 
-void SavedState::save(const GlFunctions& gl, Units units, int uniformBinding) {
+SavedState::Bound SavedState::boundAt(const GlFunctions& gl, GLenum target, GLenum start, GLenum size, GLuint index) {
+  Bound bound{};
+  gl.GetIntegeri_v(target, index, &bound.buffer);
+  gl.GetInteger64i_v(start, index, &bound.start);
+  gl.GetInteger64i_v(size, index, &bound.size);
+  return bound;
+}
+
+void SavedState::bindAgain(const GlFunctions& gl, GLenum target, GLuint index, const Bound& bound) {
+  const auto name = static_cast<GLuint>(bound.buffer);
+  if (name && bound.size > 0)
+    gl.BindBufferRange(target, index, name, static_cast<GLintptr>(bound.start), static_cast<GLsizeiptr>(bound.size));
+  else
+    gl.BindBufferBase(target, index, name);
+}
+
+void SavedState::save(const GlFunctions& gl, Units units, int uniformBinding, Storage storage) {
   units_ = units;
+  storage_ = storage;
   uniformBinding_ = uniformBinding;
   program_ = get(gl, GL_CURRENT_PROGRAM);
   vertexArray_ = get(gl, GL_VERTEX_ARRAY_BINDING);
@@ -86,12 +103,13 @@ void SavedState::save(const GlFunctions& gl, Units units, int uniformBinding) {
   }
   gl.ActiveTexture(static_cast<GLenum>(activeTexture_));
   uniformBuffer_ = get(gl, GL_UNIFORM_BUFFER_BINDING);
-  if (uniformBinding >= 0) {
-    const auto index = static_cast<GLuint>(uniformBinding);
-    indexedBuffer_ = get(gl, GL_UNIFORM_BUFFER_BINDING, uniformBinding);
-    gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, index, &indexedStart_);
-    gl.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, index, &indexedSize_);
-  }
+  if (uniformBinding >= 0)
+    uniforms_ = boundAt(gl, GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, static_cast<GLuint>(uniformBinding));
+  if (storage.first < 0) return;
+  storageBuffer_ = get(gl, GL_SHADER_STORAGE_BUFFER_BINDING);
+  for (int i = 0; i < storage.count; ++i)
+    listed_[i] = boundAt(gl, GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE,
+                         static_cast<GLuint>(storage.first + i));
 }
 
 void SavedState::restore(const GlFunctions& gl) const {
@@ -116,15 +134,11 @@ void SavedState::restore(const GlFunctions& gl) const {
   for (int i = 0; i < units_.count; ++i) restoreUnit(gl, i);
   restoreActiveUnit(gl);
   restoreObjects(gl);
-  if (uniformBinding_ >= 0) {
-    const GLuint index = name(uniformBinding_);
-    if (indexedBuffer_ && indexedSize_ > 0)
-      gl.BindBufferRange(GL_UNIFORM_BUFFER, index, name(indexedBuffer_), static_cast<GLintptr>(indexedStart_),
-                         static_cast<GLsizeiptr>(indexedSize_));
-    else
-      gl.BindBufferBase(GL_UNIFORM_BUFFER, index, name(indexedBuffer_));
-  }
+  if (uniformBinding_ >= 0) bindAgain(gl, GL_UNIFORM_BUFFER, name(uniformBinding_), uniforms_);
   gl.BindBuffer(GL_UNIFORM_BUFFER, name(uniformBuffer_));
+  if (storage_.first < 0) return;
+  for (int i = 0; i < storage_.count; ++i) bindAgain(gl, GL_SHADER_STORAGE_BUFFER, name(storage_.first + i), listed_[i]);
+  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, name(storageBuffer_));
 }
 
 void SavedState::restoreUnit(const GlFunctions& gl, int i) const {

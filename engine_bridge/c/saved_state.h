@@ -12,10 +12,16 @@ struct Units {
   int first = 0, count = 0;
 };
 
+// A run of storage buffer bindings. None at all, and the generic binding is not touched either.
+constexpr int kMostStorage = 5;
+struct Storage {
+  int first = -1, count = 0;
+};
+
 class SavedState {
  public:
   // uniformBinding < 0: no indexed uniform buffer is touched.
-  void save(const GlFunctions& gl, Units units, int uniformBinding);
+  void save(const GlFunctions& gl, Units units, int uniformBinding, Storage storage = {});
   // Put back what save() saw; objects that the host has deleted since are left unbound.
   void restore(const GlFunctions& gl) const;
   // What the host's own draws of a stage go by, after a draw of ours with one texture: culling, polygon mode, clipping,
@@ -27,6 +33,13 @@ class SavedState {
   void restoreShape(const GlFunctions& gl) const;
   void restoreUnit(const GlFunctions& gl, int i) const;
   void restoreObjects(const GlFunctions& gl) const;
+  // Of one target, generic and of a run of places.
+  struct Bound {
+    GLint buffer;
+    GLint64 start, size;
+  };
+  static Bound boundAt(const GlFunctions& gl, GLenum target, GLenum start, GLenum size, GLuint index);
+  static void bindAgain(const GlFunctions& gl, GLenum target, GLuint index, const Bound& bound);
   struct Blend {
     GLboolean enabled, mask[4];
     GLint sourceRgb, targetRgb, sourceAlpha, targetAlpha, equationRgb, equationAlpha;
@@ -41,8 +54,10 @@ class SavedState {
   GLboolean enabled_[20] = {};
   GLboolean scissor_ = GL_FALSE;
   GLint textures_[kMostUnits] = {}, samplers_[kMostUnits] = {};
-  GLint uniformBuffer_ = 0, indexedBuffer_ = 0;
-  GLint64 indexedStart_ = 0, indexedSize_ = 0;
+  GLint uniformBuffer_ = 0, storageBuffer_ = 0;
+  Bound uniforms_{};
+  Storage storage_;
+  Bound listed_[kMostStorage] = {};
 };
 
 void setViewportTo(const GlFunctions& gl, int x, int y, int width, int height);

@@ -6,15 +6,14 @@
 #if defined(STAGE_RIMS) || defined(RIMS_HERE)
 #include "shared/occlusion.glsl"
 #endif
-#if defined(STAGE_SOLIDS)
+#if defined(EXACT)
+#include "gl/exact_output.glsl"
+#elif defined(STAGE_SOLIDS)
 layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
 #elif defined(STAGE_FRONT)
 layout(location = 0) out float frontZ;  // blended by MIN
 #elif defined(STAGE_RIMS)
 #include "gl/rims_output.glsl"
-vec3 seamAround;
-vec2 seamGradient;
-bool seamIsRim = false;
 #elif defined(PUBLISHED)
 #include "gl/published_output.glsl"
 #elif defined(LEAN)
@@ -25,10 +24,15 @@ bool seamIsRim = false;
 #ifdef FRONT_TAIL
 #include "gl/front_output.glsl"
 #endif
+#ifdef STAGE_RIMS
+vec3 seamAround;
+vec2 seamGradient;
+bool seamIsRim = false;
+#endif
 
 PLD_FRAME_LAYOUT uniform PldFrame {
   vec4 pldScale;       // metres per unit; pre-exposure; not 0: orthographic; PLD_OCCLUSION_*
-  vec4 pldWeight;      // range near, far in metres; exponent
+  vec4 pldWeight;      // range near, far in metres; exponent; pixels of a row of the largest picture
   vec4 pldRefraction;  // PLD_REFRACT_*; metres (at a distance); focal length in x and y, pixels
   vec4 pldDiffusion;   // k0, k1 metres; width and height of the picture
 };
@@ -121,8 +125,12 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   layer.z = z;
 #if defined(STAGE_SOLIDS)
   if (!isSolid(layer.coverage, layer.transmission)) discard;
+#ifdef EXACT
+  appendLayer(layer, vec4(0.0f), vec4(0.0f), uint(pldWeight.w));
+#else
   solidRadiance = vec4(layer.radiance, z);
   gl_FragDepth = 1e-7f / z;
+#endif
 #else
 #ifdef SOLIDS
   if (isSolid(layer.coverage, layer.transmission) || z > seamTexel(pldSolid).a) discard;
@@ -131,12 +139,20 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   frontZ = z;
 #elif defined(STAGE_RIMS)
   if (!seamIsRim || !isRim(layer.coverage)) discard;
+#ifdef EXACT
+  layer.radiance = max(seamAround, vec3(0.0f));
+  appendLayer(layer, vec4(seamGradient, 0.0f, 0.0f), vec4(0.0f), uint(pldWeight.w));
+#else
   writeRim(layer, max(seamAround, vec3(0.0f)), seamGradient, seamWeight());
+#endif
 #else
   Scatter scatter;
   scatter.offset = vec2(offset.x, offset.y * ROWS);
   scatter.variance = variance;
-#if defined(PUBLISHED)
+#if defined(EXACT)
+  appendLayer(layer, vec4(scatter.offset, scatter.variance, 0.0f), vec4(dispersion.x, dispersion.y * ROWS, dispersion.z, dispersion.w * ROWS),
+              uint(pldWeight.w));
+#elif defined(PUBLISHED)
   writePublished(layer, scatter, seamWeight());
 #else
 #ifdef FRONT_TAIL

@@ -52,6 +52,7 @@ struct Case {
   uint32_t features;
   pld_refract refract;
   bool orthographic;
+  pld_tier tier = PLD_TIER_FLOAT;
 };
 
 std::vector<float> drawn(const Case& one, uint32_t fixed) {
@@ -60,6 +61,8 @@ std::vector<float> drawn(const Case& one, uint32_t fixed) {
   info.method = one.method;
   info.weight = one.weight;
   info.features = one.features;
+  info.tier = one.tier;
+  info.fragments_per_pixel = 6.0f;
   pld_frame frame = host.frame();
   frame.metres_per_unit = 0.37f;
   frame.pre_exposure = 1.3f;
@@ -114,7 +117,8 @@ TEST(BridgeFix, ConstantsGiveTheBitsOfTheBlock) {
       {"slab, orthographic", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_POWER, all, PLD_REFRACT_THROUGH_SLAB, true},
       {"not refracted", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_EQ7, all, PLD_REFRACT_NOTHING, false},
       {"weighted", PLD_METHOD_WEIGHTED, PLD_WEIGHT_BY_POWER, 0, PLD_REFRACT_NOTHING, false},
-      {"front+tail", PLD_METHOD_FRONT_TAIL, PLD_WEIGHT_BY_POWER, 0, PLD_REFRACT_NOTHING, false}};
+      {"front+tail", PLD_METHOD_FRONT_TAIL, PLD_WEIGHT_BY_POWER, 0, PLD_REFRACT_NOTHING, false},
+      {"exact tier", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_EQ7Z, all, PLD_REFRACT_AT_DISTANCE, true, PLD_TIER_EXACT}};
   std::vector<float> last;
   for (const Case& one : cases) {
     const std::vector<float> read = drawn(one, 0), constant = drawn(one, kEverything);
@@ -190,6 +194,8 @@ TEST(BridgeFix, HostsOfEarlierVersionsAreTaken) {
   for (const uint32_t minor : {0u, 1u, 2u, 3u}) {
     pld_create_info info = host.info();
     info.version = minor << 10;
+    info.struct_size = offsetof(pld_create_info, fragments_per_pixel);  // where it ended
+    info.fragments_per_pixel = std::numeric_limits<float>::quiet_NaN();
     pld_pass* pass = nullptr;
     EXPECT_EQ(pld_create(&info, &pass), PLD_OK) << minor;
     EXPECT_EQ(pld_destroy(&pass), PLD_OK);

@@ -105,10 +105,20 @@ GlState glState() {
     glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, index, &bytes);
     state[fmt::format("UNIFORM_BUFFER[{}]", i)] = {static_cast<double>(which), static_cast<double>(from), static_cast<double>(bytes)};
   }
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kBindings; ++i) {
+    const auto index = static_cast<GLuint>(i);
     GLint which = 0;
-    glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, static_cast<GLuint>(i), &which);
-    state[fmt::format("SHADER_STORAGE_BUFFER[{}]", i)] = {static_cast<double>(which)};
+    GLint64 from = 0, bytes = 0;
+    glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, index, &which);
+    glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, index, &from);
+    glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, index, &bytes);
+    state[fmt::format("SHADER_STORAGE_BUFFER[{}]", i)] = {static_cast<double>(which), static_cast<double>(from), static_cast<double>(bytes)};
+    GLint counter = 0;
+    if (i < 1) glGetIntegeri_v(GL_ATOMIC_COUNTER_BUFFER_BINDING, index, &counter);
+    state[fmt::format("ATOMIC_COUNTER_BUFFER[{}]", i)] = {static_cast<double>(counter)};
+    GLint image = 0;
+    if (i < 8) glGetIntegeri_v(GL_IMAGE_BINDING_NAME, index, &image);
+    state[fmt::format("IMAGE_BINDING_NAME[{}]", i)] = {static_cast<double>(image)};
   }
   return state;
 }
@@ -143,7 +153,12 @@ void setUnlikelyState() {
   glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
   for (GLuint i = 0; i < kBindings; ++i) glBindBufferRange(GL_UNIFORM_BUFFER, i, buffers[1], 256 * (i % 4), 512);
   glBindBufferBase(GL_UNIFORM_BUFFER, 7, buffers[5]);
-  for (GLuint i = 0; i < 8; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[2]);
+  for (GLuint i = 0; i < kBindings; ++i) {
+    if (i % 3)
+      glBindBufferRange(GL_SHADER_STORAGE_BUFFER, i, buffers[2], 256 * (i % 4), 512);
+    else
+      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, i ? buffers[2] : 0);
+  }
   glBindBuffer(GL_UNIFORM_BUFFER, buffers[3]);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[4]);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffers[6]);

@@ -36,7 +36,7 @@ TEST(BridgeMisuse, CreateRefusesWhatItCannotKeep) {
       EXPECT_GT(host.log.last().size(), 10u) << what;
     }
   };
-  refused([](auto& i) { i.struct_size -= 8; }, PLD_ERROR_VERSION, "struct_size");
+  refused([](auto& i) { i.struct_size -= 4; }, PLD_ERROR_VERSION, "struct_size");
   refused([](auto& i) { i.version = PLD_VERSION + (1 << 10); }, PLD_ERROR_VERSION, "version");
   refused([](auto& i) { i.get_proc_address = nullptr; }, PLD_ERROR_ARGUMENT, "get_proc_address");
   refused([](auto& i) { i.get_proc_address = [](void*, const char*) -> pld_proc { return nullptr; }; }, PLD_ERROR_CONTEXT, "no GL");
@@ -45,7 +45,11 @@ TEST(BridgeMisuse, CreateRefusesWhatItCannotKeep) {
           PLD_ERROR_UNSUPPORTED, "a function is missing");
   refused([](auto& i) { i.method = static_cast<pld_method>(9); }, PLD_ERROR_ARGUMENT, "method");
   refused([](auto& i) { i.tier = static_cast<pld_tier>(-1); }, PLD_ERROR_ARGUMENT, "tier");
-  refused([](auto& i) { i.tier = PLD_TIER_EXACT; }, PLD_ERROR_UNSUPPORTED, "exact");
+  for (const float room : {0.0f, -1.0f, 1e9f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+    refused([&](auto& i) { i.tier = PLD_TIER_EXACT; i.fragments_per_pixel = room; }, PLD_ERROR_ARGUMENT, "exact, without room or with too much");
+  refused([](auto& i) { i.tier = PLD_TIER_EXACT; i.fragments_per_pixel = 8.0f; i.storage_binding = 1000; }, PLD_ERROR_ARGUMENT, "storage_binding");
+  refused([](auto& i) { i.tier = PLD_TIER_EXACT; i.fragments_per_pixel = 8.0f; i.struct_size = offsetof(pld_create_info, fragments_per_pixel); },
+          PLD_ERROR_ARGUMENT, "exact, by a header that states no room");
   refused([](auto& i) { i.features = 1u << 30; }, PLD_ERROR_ARGUMENT, "features");
   refused([](auto& i) { i.flags = 1u << 30; }, PLD_ERROR_ARGUMENT, "flags");
   refused([](auto& i) { i.weight = static_cast<pld_weight>(44); }, PLD_ERROR_ARGUMENT, "weight");

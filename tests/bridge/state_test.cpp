@@ -38,7 +38,10 @@ const Kind kKinds[] = {
     {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_LIGHT | PLD_FEATURE_RIMS, PLD_DEPTH_REVERSED, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
     {PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS, PLD_DEPTH_DEVICE, {PLD_STAGE_LAYERS}},
     {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LIGHT, PLD_DEPTH_DEVICE, {PLD_STAGE_LAYERS, PLD_STAGE_RIMS}},
-    {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_SOLIDS, PLD_DEPTH_REVERSED, {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_LOW}}};
+    {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_SOLIDS, PLD_DEPTH_REVERSED, {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
+    {PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, PLD_DEPTH_DEVICE, {PLD_STAGE_LAYERS}},
+    {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, kAll | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_REVERSED,
+     {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}}};
 
 // What a host's own draws change: culling and the like, which it puts back itself.
 void setShape(bool unlikely) {
@@ -81,9 +84,11 @@ TEST(BridgeState, EveryCallLeavesGlAsItFoundIt) {
     info.rows = PLD_ROWS_UP;
     info.tier = PLD_TIER_EXACT;
     pld_pass* pass = nullptr;
-    EXPECT_EQ(pld_create(&info, &pass), PLD_ERROR_UNSUPPORTED);
+    EXPECT_EQ(pld_create(&info, &pass), PLD_ERROR_ARGUMENT);  // no room
     watch.unchanged("pld_create that fails");
     info.tier = setup.tier;
+    info.fragments_per_pixel = 4.0f;
+    info.storage_binding = 3;
     ASSERT_EQ(pld_create(&info, &pass), PLD_OK) << host.log.last();
     watch.unchanged("pld_create");
     EXPECT_EQ(pld_resize(pass, -1, 5), PLD_ERROR_SIZE);
@@ -146,8 +151,9 @@ TEST(BridgeState, EveryCallLeavesGlAsItFoundIt) {
     EXPECT_EQ(pld_query(pass, PLD_VALUE_BYTES, &value), PLD_OK);
     EXPECT_GT(value, 40u * 30u);
     const char* seam = nullptr;
-    EXPECT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, 330, &seam), PLD_OK);
-    const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam +
+    const int version = setup.tier == PLD_TIER_EXACT ? 430 : 330;
+    EXPECT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, version, &seam), PLD_OK);
+    const GLuint program = makeProgram(kFullscreenVertex, "#version " + std::to_string(version) + " core\n" + seam +
                                                               "void main() { pldWriteFragment(pldSurface(vec3(1.0), "
                                                               "0.5, vec3(0.0), gl_FragCoord.xyz)); }\n");
     EXPECT_EQ(pld_connect(pass, program), PLD_OK);
@@ -158,6 +164,38 @@ TEST(BridgeState, EveryCallLeavesGlAsItFoundIt) {
     glPopDebugGroup();  // the driver keeps the names of those that are open for ever
     std::printf("state: %zu pieces of state equal after each of %d steps\n", watch.before.size(), watch.calls);
   }
+}
+
+// The exact tier, when more fragments come than fit.
+TEST(BridgeState, AStageWithoutRoomLeavesGlAsItFoundIt) {
+  GlContext context;
+  Host host(40, 30);
+  setUnlikelyState();
+  pld_create_info info = host.info();
+  info.features = kAll | PLD_FEATURE_RIMS;
+  info.flags = kFlags;
+  info.tier = PLD_TIER_EXACT;
+  info.fragments_per_pixel = 1.5f;
+  info.storage_binding = 2;
+  pld_pass* pass = host.create(info);
+  ASSERT_NE(pass, nullptr);
+  const pld_frame frame = host.frame();
+  Watch watch;
+  for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS}) {
+    ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+    setShape(false);
+    for (int i = 0; i < (stage == PLD_STAGE_LAYERS ? 2 : 1); ++i) drawSomething(pass, stage);
+    setShape(true);
+    ASSERT_EQ(pld_end(pass), stage == PLD_STAGE_LAYERS ? PLD_ERROR_MEMORY : PLD_OK) << pld_message(pass);
+    watch.unchanged("pld_end");
+    if (stage != PLD_STAGE_LAYERS) continue;
+    EXPECT_EQ(pld_begin(pass, PLD_STAGE_RIMS, &frame), PLD_ERROR_ORDER);
+    ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+    ASSERT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
+    watch.unchanged("pld_end of the stage again");
+  }
+  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+  glPopDebugGroup();
 }
 
 // The same for shadow maps.

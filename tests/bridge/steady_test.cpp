@@ -109,7 +109,12 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
            PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
        {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
       {"half, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_RIMS, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
-      {"published", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION, {PLD_STAGE_LAYERS}}};
+      {"published", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION, {PLD_STAGE_LAYERS}},
+      {"exact, all phenomena", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT,
+       PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION |
+           PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
+       {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
+      {"exact, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, {PLD_STAGE_LAYERS}}};
   GlContext context;
   Host host(48, 32);
   for (const Kind& kind : kinds) {
@@ -122,6 +127,7 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     };
     info.method = kind.method;
     info.tier = kind.tier;
+    info.fragments_per_pixel = 4.0f;
     info.features = kind.features;
     info.flags = PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS;
     calls.clear();

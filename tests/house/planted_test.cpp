@@ -92,6 +92,7 @@ TEST(Planted, ReservedWordsAreFound) {
 
 TEST(Planted, TheRestOfTheSharedRulesAreFound) {
   EXPECT_EQ(shared("double x = 1;\n"), 1u);
+  EXPECT_EQ(againstSharedText({"shaders/shared/exact_sums.glsl", "double x = 1;\n"}).size(), 0u);
   EXPECT_EQ(shared("PLD_FN void f(inout float x) {}\n"), 1u);
   EXPECT_EQ(shared("vec4 c = texture(t, uv);\n"), 1u);
   EXPECT_EQ(shared("if (a) discard;\n"), 1u);

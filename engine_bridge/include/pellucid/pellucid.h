@@ -1,5 +1,6 @@
 /* Pellucid behind an engine: the host draws its transparent geometry, in any order, with its own shaders; this library
-   keeps the planes, the blending and the resolve. See INTEGRATION.md. C99, OpenGL 3.3 and later.
+   keeps the planes, the blending and the resolve. See INTEGRATION.md. C99, OpenGL 3.3 and later
+   (4.3 for PLD_TIER_EXACT).
 
    Rules of the interface
    * Every call is made with the host's GL context current on the calling thread, the one that pld_create() saw.
@@ -17,7 +18,8 @@
 
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR 4 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,
-                               rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters.
+                               rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,
+                               the exact tier.
                                A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -73,7 +75,9 @@ typedef PLD_ENUM(pld_tier) {
   PLD_TIER_FLOAT = 0,     /* 32-bit float planes: the bits of the offline program on the same fragments and order */
   PLD_TIER_HALF = 1,      /* the same planes in 16-bit floats; sums are clamped at 65504 */
   PLD_TIER_PUBLISHED = 2, /* RGBA16F + RGBA8 + RG8_SNORM, as McGuire and Mara 2017 print them */
-  PLD_TIER_EXACT = 3      /* refused: order-independent bits need fragment lists, which are the offline program's */
+  PLD_TIER_EXACT = 3      /* the planes of PLD_TIER_FLOAT with bits that no order of draws changes: each the true sum of its
+                             terms, rounded once. Needs OpenGL 4.3, seams of GLSL 430 and later, and room for all fragments of a
+                             stage, which the host states: see fragments_per_pixel */
 } pld_tier;
 
 /* What the scene's materials need. A plane that no feature asks for is neither kept nor written. */
@@ -143,6 +147,11 @@ typedef struct pld_create_info {
   uint32_t uniform_binding; /* binding point of the seam's uniform block, while stages are drawn */
   uint32_t texture_unit;    /* the seam reads this unit and the two after it, while stages are drawn; three after it
                                with PLD_FEATURE_RIMS in the published tier or with PLD_METHOD_FRONT_TAIL */
+  float fragments_per_pixel; /* PLD_TIER_EXACT: room for this many on the average of pld_resize()'s picture, in each stage; > 0, at most
+                                65536. 36 bytes each, 52 with refraction, diffusion or rims, 68 with dispersion. Where more come,
+                                pld_end() returns PLD_ERROR_MEMORY */
+  uint32_t storage_binding;  /* PLD_TIER_EXACT: the first of three shader storage bindings, four with refraction, diffusion or
+                                rims, five with dispersion, that the seam writes to while stages are drawn */
 } pld_create_info;
 
 typedef PLD_ENUM(pld_refract) {
@@ -188,7 +197,7 @@ typedef PLD_ENUM(pld_fixed) {
 
 typedef PLD_ENUM(pld_stage) {
   PLD_STAGE_SOLIDS = 0, /* with PLD_FEATURE_SOLIDS: the same geometry, the nearest fragment that hides everything */
-  PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth */
+  PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth; not in the exact tier */
   PLD_STAGE_LAYERS = 2, /* all transparent geometry, in any order */
   PLD_STAGE_RIMS = 3,   /* with PLD_FEATURE_RIMS, but for the published tier and PLD_METHOD_FRONT_TAIL: the cut-out geometry of
                            the layers, by pldWriteRim() */
@@ -236,7 +245,7 @@ typedef struct pld_target {
 
 typedef PLD_ENUM(pld_value) {
   PLD_VALUE_BITS_PER_PIXEL = 0, /* of the planes that layers are blended into */
-  PLD_VALUE_BYTES = 1,          /* of all textures of this pass, since pld_resize() */
+  PLD_VALUE_BYTES = 1,          /* of all textures and lists of this pass, since pld_resize() */
   PLD_VALUE_PLANES = 2,         /* how many textures layers are blended into */
   PLD_VALUE_GEOMETRY_PASSES = 3,
   PLD_VALUE_FIRST_PLANE = 4, /* + i: the GL name of plane i, to look at; 0 where draw buffer i is not used; i < 8 */
@@ -244,6 +253,8 @@ typedef PLD_ENUM(pld_value) {
   PLD_VALUE_NS_DRAWS = 17,   /* from the end of pld_begin() to that of pld_end(), all stages */
   PLD_VALUE_NS_RESOLVE = 18,
   PLD_VALUE_NS_SHADOW = 19, /* of the newest face that is known, from pld_shadow_begin() to pld_shadow_end(), draws included */
+  PLD_VALUE_FRAGMENTS = 20,     /* PLD_TIER_EXACT: what came in the fullest stage of the newest frame, with or without room */
+  PLD_VALUE_FRAGMENT_ROOM = 21, /* PLD_TIER_EXACT: what fits, since pld_resize() */
   PLD_VALUE_SHADOW_TEXTURE = 24, /* GL names, 0 before pld_shadow_resize(): the GL_TEXTURE_2D_ARRAY of the maps */
   PLD_VALUE_SHADOW_BUFFER = 25,  /* the uniform buffer of their table */
   PLD_VALUE_SHADOW_BYTES = 26    /* of all textures of the maps */
@@ -312,7 +323,9 @@ PLD_API pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height);
 /* Binds a framebuffer of this library and sets blending, masks, depth and viewport; the host then draws with programs
    that hold the seam of this stage. In between it may change anything but those. */
 PLD_API pld_status pld_begin(pld_pass* pass, pld_stage stage, const pld_frame* frame);
-/* Puts back the state that pld_begin() found. */
+/* Puts back the state that pld_begin() found. In PLD_TIER_EXACT it waits for the device, to learn whether all fragments had
+   room. If not, it returns PLD_ERROR_MEMORY and the stage counts as not drawn, so pld_resolve() refuses the frame: begin the
+   stage again with less geometry, or make another pass with the room that PLD_VALUE_FRAGMENTS tells. */
 PLD_API pld_status pld_end(pld_pass* pass);
 /* The picture, or a view of a plane, into the target. Pixels without layers get the background's bits. Views of shadow
    maps need no frame. */
