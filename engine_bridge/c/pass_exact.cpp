@@ -115,6 +115,7 @@ pld_status pld_pass::foldLists() {
   if (came > fragments_) fragments_ = came;
   if (came <= room_) return PLD_OK;
   const double pixels = static_cast<double>(width_) * static_cast<double>(height_);
-  return fail(PLD_ERROR_MEMORY, "pld_end: %u fragments came, %llu fit: fragments_per_pixel is %g, expected %g at least, or less geometry", came,
-              static_cast<unsigned long long>(room_), static_cast<double>(info_.fragments_per_pixel), static_cast<double>(came) / pixels);
+  return fail(PLD_ERROR_MEMORY, "pld_end: %u fragments came, %llu fit: fragments_per_pixel is %g, expected %.2f, or less geometry", came,
+              static_cast<unsigned long long>(room_), static_cast<double>(info_.fragments_per_pixel),
+              std::ceil(100.0 * static_cast<double>(came) / pixels) / 100.0);
 }
