@@ -239,6 +239,7 @@ void measure(benchmark::State& state, const Kind& kind) {
   info.tier = kind.tier;
   info.features = kind.features;
   info.depth = PLD_DEPTH_DEVICE;
+  info.fragments_per_pixel = kLayers;
   pld_pass* pass = nullptr;
   need(pld_create(&info, &pass), pass);
   const pld_frame frame = scene.frame();
@@ -251,7 +252,7 @@ void measure(benchmark::State& state, const Kind& kind) {
     stages.emplace_back(stage, scene.shader(seam, kind.lit));
   };
   if (kind.features & PLD_FEATURE_SOLIDS) add(PLD_STAGE_SOLIDS);
-  if (kind.method == PLD_METHOD_FRONT_TAIL) add(PLD_STAGE_FRONT);
+  if (kind.method == PLD_METHOD_FRONT_TAIL && kind.tier != PLD_TIER_EXACT) add(PLD_STAGE_FRONT);
   add(PLD_STAGE_LAYERS);
   const GLuint blend = scene.shader(nullptr, kind.lit);
   const pld_target target = scene.host().target();
@@ -305,7 +306,11 @@ const Kind kKinds[] = {
     {"unlit, half, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, kFixed, 0},
     {"unlit, half, grey, all fixed", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, kFixed | PLD_FIXED_EXPOSURE, 0},
     {"unlit, published", false, PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, 0, kFixed, 0},
-    {"unlit, float, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0, kFixed, 0}};
+    {"unlit, float, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0, kFixed, 0},
+    {"lit, exact, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, kColoured | kLight | kScatter, kFixed, 0},
+    {"unlit, exact, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, 0, kFixed, 0},
+    {"unlit, exact, coloured, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, kColoured | kLight, kFixed, 0},
+    {"unlit, exact, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, kFixed, 0}};
 
 }  // namespace
 }  // namespace pellucid::test

@@ -174,13 +174,14 @@ void main() {
   vec4 planes[kPlanes], largest[kPlanes];
   for (int i = 0; i < kPlanes; ++i) planes[i] = largest[i] = vec4(0.0f);
   vec2 nearest = vec2(kNowhere);
+  uint links = linkOf(0u) - 1u;
   uint first = pldLinks[headHere(uint(rowLength))];
   float frontZ = kNowhere;
 #ifdef FRONT_TAIL
-  for (uint next = first; next != 0u; next = pldLinks[linkOf(next - 1u)]) frontZ = min(frontZ, pldTransmissions[next - 1u].a);
+  for (uint next = first; next != 0u; next = pldLinks[links + next]) frontZ = min(frontZ, pldTransmissions[next - 1u].a);
 #endif
   uint count = 0u;
-  for (uint next = first; next != 0u; next = pldLinks[linkOf(next - 1u)]) {
+  for (uint next = first; next != 0u; next = pldLinks[links + next]) {
     writeOne(next - 1u, frontZ);
     nearest = min(nearest, nearestNow());
 #ifdef DIFFUSE_IN_ALPHA
@@ -193,7 +194,7 @@ void main() {
   if (count > 0u) {
     ExactSums sums[kPlanes];
     for (int i = 0; i < kPlanes; ++i) sums[i] = exactSums(largest[i], count);
-    for (uint next = first; next != 0u; next = pldLinks[linkOf(next - 1u)]) {
+    for (uint next = first; next != 0u; next = pldLinks[links + next]) {
       writeOne(next - 1u, frontZ);
 #ifdef DIFFUSE_IN_ALPHA
       opacitySum.a = 0.0f;
