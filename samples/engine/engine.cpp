@@ -351,7 +351,7 @@ GLuint program(const std::string& vertex, const std::string& fragment) {
 
 class Engine {
  public:
-  Engine(int width, int height, pld_method method) : width_(width), height_(height) {
+  Engine(int width, int height, pld_method method, pld_tier tier) : width_(width), height_(height) {
     albedo_ = texture(GL_RGBA16F);
     normal_ = texture(GL_RGBA32F);
     lit_ = texture(GL_RGBA32F);
@@ -374,7 +374,8 @@ class Engine {
     info.version = PLD_VERSION;
     info.get_proc_address = [](void*, const char* name) { return reinterpret_cast<pld_proc>(eglGetProcAddress(name)); };
     info.log = [](void*, pld_log_level, const char* text) { std::fprintf(stderr, "%s\n", text); };
-    info.method = method;
+    info.method = method, info.tier = tier;
+    info.fragments_per_pixel = 4.0f;  // of the exact tier
     info.features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT;
     if (method == PLD_METHOD_PHENOMENOLOGICAL) info.features |= PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION;
     info.flags = PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS;
@@ -384,7 +385,7 @@ class Engine {
     info.texture_unit = 4;
     if (pld_create(&info, &pass_) != PLD_OK) stop("no pass");
     check(pld_resize(pass_, width, height), pass_);
-    if (method == PLD_METHOD_FRONT_TAIL) addStage(PLD_STAGE_FRONT);
+    if (method == PLD_METHOD_FRONT_TAIL && tier != PLD_TIER_EXACT) addStage(PLD_STAGE_FRONT);
     addStage(PLD_STAGE_LAYERS);
   }
   ~Engine() { pld_destroy(&pass_); }
@@ -555,14 +556,14 @@ GLFWwindow* makeWindow(int width, int height) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count < 3 || count > 6) stop("engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD] [window[:FRAMES]]");
+  if (count < 3 || count > 6) stop("engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:exact]] [window[:FRAMES]]");
   int width = 640, height = 360;
   if (count > 3 && (std::sscanf(arguments[3], "%dx%d", &width, &height) != 2 || width < 1 || height < 1))
     stop("expected WIDTHxHEIGHT");
-  const std::string named = count > 4 ? arguments[4] : "phenomenological", folder = arguments[2];
+  const std::string asked = count > 4 ? arguments[4] : "phenomenological", named = asked.substr(0, asked.find(':')), folder = arguments[2];
   const char* const names[] = {"phenomenological", "weighted", "front+tail"};
   const auto method = std::find(std::begin(names), std::end(names), named) - std::begin(names);
-  if (method == 3) stop("no method " + named);
+  if (method == 3 || (asked != named && asked != named + ":exact")) stop("no method " + asked);
   const std::string shows = count > 5 ? arguments[5] : "";
   int frames = 0;
   if (!shows.empty() && shows != "window" && (std::sscanf(shows.c_str(), "window:%d", &frames) != 1 || frames < 1))
@@ -574,7 +575,7 @@ int main(int count, char** arguments) {
     const Gltf gltf = read(arguments[1]);
     for (const json& root : gltf.root.at("scenes").at(0).at("nodes")) addNode(scene, gltf, root.get<std::size_t>(), glm::mat4(1.0f));
     addRoom(scene);
-    Engine engine(width, height, static_cast<pld_method>(method));
+    Engine engine(width, height, static_cast<pld_method>(method), asked == named ? PLD_TIER_FLOAT : PLD_TIER_EXACT);
     engine.draw(scene);
     engine.draw(scene);  // what a first frame compiles is no matter of its time
     engine.write(folder + "/opaque.exr", engine.lit());
