@@ -291,6 +291,9 @@ constexpr uint32_t kFixed = PLD_FIXED_UNITS | PLD_FIXED_WEIGHT | PLD_FIXED_REFRA
 const Kind kKinds[] = {
     {"lit, float, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter | kSolids, kFixed, 1.3},
     {"lit, half, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter | kSolids, kFixed, 0},
+    {"lit, half, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter, kFixed, 0},
+    {"lit, half, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
+    {"lit, float, grey, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kLight | kScatter, kFixed, 0},
     {"lit, published, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, kScatter | kSolids, kFixed, 0},
     {"lit, float, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, kFixed, 1.3},
     {"lit, float, full model, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, kFixed | PLD_FIXED_EXPOSURE, 1.3},

@@ -126,7 +126,7 @@ std::vector<std::string> storageDefines(int first) {
 
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
   return hostText("gl/seam.glsl", seamDefines(permutation, stage),
-                  {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "DIFFUSE_IN_ALPHA", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
+                  {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "DIFFUSE_IN_ALPHA", "NO_DIFFUSE", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
                    "EXACT", "LISTS_OFFSETS", "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "RIMS_HERE", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
                    "ROWS", "UNITS", "EXPOSURE", "ORTHOGRAPHIC", "RANGE_NEAR", "RANGE_FAR", "EXPONENT", "REFRACT", "REFRACT_DISTANCE",
                    "DIFFUSION_K0", "DIFFUSION_K1"},

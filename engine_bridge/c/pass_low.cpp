@@ -23,7 +23,7 @@ std::string pld_pass::buildLowPrograms() {
   upsample.insert(upsample.end(), solids.begin(), solids.end());
   if (permutation_.grey()) upsample.emplace_back("GREY");
   if (permutation_.scatters()) upsample.emplace_back("SCATTER");
-  if (permutation_.diffuseInAlpha()) upsample.emplace_back("DIFFUSE_IN_ALPHA");
+  for (const std::string& place : scatterPlaces(permutation_)) upsample.push_back(place);
   if (permutation_.has(PLD_FEATURE_DISPERSION)) upsample.emplace_back("DISPERSION");
   if (permutation_.tier == PLD_TIER_HALF) upsample.emplace_back("HALF");
   std::string failure = lowDepth_.build(gl, "gl/low_depth.frag", solids);

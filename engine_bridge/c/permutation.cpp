@@ -58,6 +58,11 @@ std::string conflictOf(const Permutation& p) {
   return {};
 }
 
+std::vector<std::string> scatterPlaces(const Permutation& p) {
+  if (!p.scatters() || p.published() || p.atLowResolution) return {};
+  return {p.diffuseInAlpha() ? "DIFFUSE_IN_ALPHA" : "NO_DIFFUSE"};
+}
+
 PlaneSpec nearestPlane() {
   constexpr float far = std::numeric_limits<float>::infinity();
   return {5, GL_R32F, 32, 9, BlendKind::minimum, {far, 0, 0, 0}};
@@ -78,6 +83,12 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
   const auto sum = [&](GLuint attachment, GLuint unit) {
     planes.push_back({attachment, four, bits, unit, BlendKind::add, {0, 0, 0, 0}});
   };
+  const auto opacity = [&](GLuint attachment) {
+    if (p.diffuseInAlpha())
+      planes.push_back({attachment, four, bits, 3, BlendKind::alphaMinimum, {0, 0, 0, far}});
+    else
+      sum(attachment, 3);
+  };
   sum(0, 1);
   if (p.lean() && p.grey()) {
     planes.push_back({1, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
@@ -85,19 +96,16 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
     sum(1, 2);
     sum(2, 4);
   } else if (p.grey()) {
-    sum(1, 3);
+    opacity(1);
     planes.push_back({2, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
   } else {
     sum(1, 2);
-    if (p.diffuseInAlpha())
-      planes.push_back({2, four, bits, 3, BlendKind::alphaMinimum, {0, 0, 0, far}});
-    else
-      sum(2, 3);
+    opacity(2);
     sum(3, 4);
   }
   if (p.light()) sum(4, 7);
   if (p.scatters()) {
-    if (!p.diffuseInAlpha()) planes.push_back({5, GL_RG32F, 64, 9, BlendKind::minimum, {far, far, 0, 0}});
+    if (p.atLowResolution) planes.push_back({5, GL_RG32F, 64, 9, BlendKind::minimum, {far, far, 0, 0}});
     sum(6, 8);
   }
   if (p.has(PLD_FEATURE_DISPERSION)) sum(7, 10);
@@ -135,7 +143,8 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("HALF", p.tier == PLD_TIER_HALF && (layers || low));
   define("FRONT_TAIL", p.frontStage() && layers);
   define("SCATTER", p.scatters() && (layers || low));
-  define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha() && layers);
+  if (layers)
+    for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
   define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && (layers || low));
   define("DIFFUSES", p.has(PLD_FEATURE_DIFFUSION) && (layers || low));
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && (layers || low));
@@ -158,7 +167,8 @@ std::vector<std::string> foldDefines(const Permutation& p, pld_stage stage) {
   define("LEAN", p.lean());
   define("FRONT_TAIL", p.fronts() && layers);
   define("SCATTER", p.scatters() && layers);
-  define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha() && layers);
+  if (layers)
+    for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && layers);
   return defines;
 }
@@ -177,7 +187,7 @@ std::vector<std::string> resolveDefines(const Permutation& p) {
   define("HALF_SUMS", !p.inFloats());
   define("FRONT_TAIL", p.fronts());
   define("SCATTER", p.scatters());
-  define("DIFFUSE_IN_ALPHA", p.diffuseInAlpha());
+  for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION));
   return defines;
 }

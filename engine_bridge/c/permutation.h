@@ -31,9 +31,8 @@ struct Permutation {
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters() || low()); }
   // No layer adds light: half of the sums are not needed.
   bool lean() const { return !published() && !light(); }
-  // The nearest layer that diffuses has a place beside a sum. Not in half floats: it is compared with depths. Not where the
-  // nearest of all is wanted too.
-  bool diffuseInAlpha() const { return scatters() && !grey() && inFloats() && !atLowResolution; }
+  // The nearest layer that diffuses has a place beside a sum. At low resolution the nearest of all is wanted too.
+  bool diffuseInAlpha() const { return has(PLD_FEATURE_DIFFUSION) && !published() && !atLowResolution; }
   bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // From sums of one kind what occlusion hides is taken later; others take rims that are dark already.
@@ -66,6 +65,8 @@ struct PlaneSpec {
 std::vector<PlaneSpec> planesOf(const Permutation& permutation);
 PlaneSpec nearestPlane();  // of low-resolution layers besides
 
+// Of shaders/gl/sums_output.glsl and resolve_here.glsl: what lies where. Without SCATTER, which stages and views choose.
+std::vector<std::string> scatterPlaces(const Permutation& permutation);
 // Defines of shaders/gl/seam.glsl for a stage; of resolve_here.glsl.
 std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);
 std::vector<std::string> resolveDefines(const Permutation& permutation);

@@ -147,7 +147,7 @@ void setPlanes(vec4 planes[kPlanes]) {
 
 // Planes that keep the nearest: of all layers, of those that diffuse.
 vec2 nearestNow() {
-#if defined(STAGE_RIMS) || defined(LEAN)
+#if defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
   return vec2(0.0f);
 #elif defined(DIFFUSE_IN_ALPHA)
   return vec2(opacitySum.a);
@@ -159,7 +159,7 @@ vec2 nearestNow() {
 }
 
 void setNearest(vec2 nearest) {
-#if defined(STAGE_RIMS) || defined(LEAN)
+#if defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
 #elif defined(DIFFUSE_IN_ALPHA)
   opacitySum.a = nearest.y;
 #elif defined(SCATTER)

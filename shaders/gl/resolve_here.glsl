@@ -57,6 +57,10 @@ OitTargets targetsAt(ivec2 pixel) {
   GreyTargets grey;
   grey.radiance = texelFetch(radianceSum, pixel, 0);
   grey.opacity = texelFetch(opacitySum, pixel, 0);
+#ifdef DIFFUSE_IN_ALPHA
+  grey.opacity.a = grey.opacity.z;  // the count
+  grey.opacity.z = 0.0f;
+#endif
   vec4 depth = texelFetch(depthSum, pixel, 0);
   grey.depth = vec2(depth.x, depth.y);
   return unpackGrey(grey, light);
@@ -127,8 +131,10 @@ VeilHere veilAt(ivec2 pixel) {
 #ifdef PUBLISHED
   vec2 depths = vec2(0.0f);  // no depth says what stands in front
 #else
-#ifdef DIFFUSE_IN_ALPHA
+#if defined(DIFFUSE_IN_ALPHA)
   float diffuseZ = texelFetch(opacitySum, pixel, 0).a;
+#elif defined(NO_DIFFUSE)
+  float diffuseZ = intBitsToFloat(0x7f800000);
 #else
   float diffuseZ = texelFetch(nearestZ, pixel, 0).g;
 #endif

@@ -148,7 +148,11 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
 #else
   Scatter scatter;
   scatter.offset = vec2(offset.x, offset.y * ROWS);
+#ifdef DIFFUSES
   scatter.variance = variance;
+#else
+  scatter.variance = 0.0f;
+#endif
 #if defined(EXACT)
   appendLayer(layer, vec4(scatter.offset, scatter.variance, 0.0f), vec4(dispersion.x, dispersion.y * ROWS, dispersion.z, dispersion.w * ROWS),
               uint(pldWeight.w));

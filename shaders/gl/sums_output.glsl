@@ -1,7 +1,8 @@
 #pragma once
 // Adds one layer to the planes by fixed-function blending: all targets ONE, ONE but target 5, MIN. GREY: the layout of
-// scenes without coloured transmission. DIFFUSE_IN_ALPHA: no target 5; the nearest layer that diffuses is the alpha of
-// target 2, MIN, in place of what nobody reads then.
+// scenes without coloured transmission. Where depths serve no low resolution there is no target 5: DIFFUSE_IN_ALPHA, the
+// nearest layer that diffuses is the alpha of the opacities, MIN, in place of what nobody reads then; NO_DIFFUSE, no layer
+// does.
 #include "shared/refraction.glsl"
 
 layout(location = 0) out vec4 radianceSum;
@@ -15,7 +16,7 @@ layout(location = 3) out vec4 depthSum;
 #endif
 layout(location = 4) out vec4 lightSum;
 #ifdef SCATTER
-#ifndef DIFFUSE_IN_ALPHA
+#if !defined(DIFFUSE_IN_ALPHA) && !defined(NO_DIFFUSE)
 layout(location = 5) out vec2 nearestZ;  // of all layers, of those that diffuse
 #endif
 layout(location = 6) out vec4 refractionSum;
@@ -38,10 +39,13 @@ void writeOitSums(OitSums sums, float z) {
 #endif
   radianceSum = targets.radiance;
   opacitySum = targets.opacity;
+#if defined(GREY) && defined(DIFFUSE_IN_ALPHA)
+  opacitySum.z = targets.opacity.a;  // the count
+#endif
   depthSum = targets.depth;
 #ifndef SCATTER
   nearestZ = z;
-#elif !defined(DIFFUSE_IN_ALPHA)
+#elif !defined(DIFFUSE_IN_ALPHA) && !defined(NO_DIFFUSE)
   nearestZ.x = z;
 #endif
 }
@@ -54,9 +58,12 @@ void writeSums(Layer layer, WeightSettings settings) {
 // After writeOitSums().
 //   z  of a layer that diffuses, else +inf
 void writeDiffuseZ(float z) {
-#ifdef DIFFUSE_IN_ALPHA
+#if defined(DIFFUSE_IN_ALPHA) && defined(HALF)
+  // Rounded to a half, towards the eye: what lies behind the layer must not come to lie before it.
+  opacitySum.a = intBitsToFloat(floatBitsToInt(z) & ~0x1fff);
+#elif defined(DIFFUSE_IN_ALPHA)
   opacitySum.a = z;
-#else
+#elif !defined(NO_DIFFUSE)
   nearestZ.y = z;
 #endif
 }
@@ -95,7 +102,11 @@ void writeNothing() {
 void clampToHalf() {
   const float largest = 65504.0f;
   radianceSum = min(radianceSum, vec4(largest));
+#ifdef DIFFUSE_IN_ALPHA
+  opacitySum.rgb = min(opacitySum.rgb, vec3(largest));
+#else
   opacitySum = min(opacitySum, vec4(largest));
+#endif
   lightSum = min(lightSum, vec4(largest));
 #ifndef GREY
   weightSum = min(weightSum, vec4(largest));

@@ -159,14 +159,13 @@ Planes planesOf(const OitPlanes& sums, const Case& one) {
       if (one.coloured) {
         put(0, targets.radiance);
         put(1, targets.weight);
-        put(2, scatters ? glm::vec4(glm::vec3(targets.opacity), diffuseZ) : targets.opacity);
+        put(2, one.diffuses ? glm::vec4(glm::vec3(targets.opacity), diffuseZ) : targets.opacity);
         put(3, targets.depth);
       } else {
         const shading::GreyTargets packed = shading::packGrey(unpacked);
         put(0, packed.radiance);
-        put(1, packed.opacity);
+        put(1, one.diffuses ? glm::vec4(packed.opacity.x, packed.opacity.y, packed.opacity.w, diffuseZ) : packed.opacity);
         put(2, glm::vec4(packed.depth, 0, 1));
-        if (scatters) put(5, glm::vec4(sums.frontZ.at(x, y), diffuseZ, 0, 1));
       }
       if (scatters) put(6, sums.refraction.at(x, y));
       if (one.disperses) put(7, sums.dispersion.at(x, y));

@@ -151,6 +151,38 @@ TEST(BridgeReplay, AllPhenomenaGiveTheOfflineBits) {
   expectSameBits("refraction, dispersion, diffusion, solids",
                  {.refracts = true, .diffuses = true, .disperses = true, .solids = true});
 }
+TEST(BridgeReplay, GreyScatteringGivesTheOfflineBits) {
+  expectSameBits("grey, light, refraction, diffusion", {.coloured = false, .refracts = true, .diffuses = true});
+  expectSameBits("grey, refraction", {.coloured = false, .light = false, .refracts = true});
+}
+
+// The nearest layer that diffuses takes no plane that it does not need, and the others' depths are kept for low resolution alone.
+TEST(BridgeReplay, PlanesHoldNothingThatIsNotRead) {
+  GlContext context;
+  Host host(8, 8);
+  constexpr uint32_t both = PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION;
+  const struct {
+    pld_tier tier;
+    uint32_t features;
+    uint64_t planes, bits;
+  } cases[] = {{PLD_TIER_FLOAT, both | PLD_FEATURE_COLOURED, 6, 768}, {PLD_TIER_FLOAT, both, 5, 576},
+               {PLD_TIER_FLOAT, PLD_FEATURE_REFRACTION, 5, 576},      {PLD_TIER_HALF, both | PLD_FEATURE_COLOURED, 6, 384},
+               {PLD_TIER_HALF, both, 5, 288},                         {PLD_TIER_HALF, PLD_FEATURE_REFRACTION | PLD_FEATURE_COLOURED, 6, 384}};
+  for (const auto& one : cases) {
+    pld_create_info info = host.info();
+    info.tier = one.tier;
+    info.features = one.features;
+    pld_pass* pass = host.create(info);
+    ASSERT_NE(pass, nullptr);
+    uint64_t planes = 0, bits = 0;
+    EXPECT_EQ(pld_query(pass, PLD_VALUE_PLANES, &planes), PLD_OK);
+    EXPECT_EQ(pld_query(pass, PLD_VALUE_BITS_PER_PIXEL, &bits), PLD_OK);
+    EXPECT_EQ(planes, one.planes);
+    EXPECT_EQ(bits, one.bits);
+    pld_destroy(&pass);
+  }
+}
+
 // The driver blends 8 and 16 bit targets in its own arithmetic, so it is its planes that go through the offline decoder.
 OitPlanes decoded(pld_pass* pass, const Shot& shot, bool scatters) {
   OitPlanes planes = emptyPublishedPlanes(shot.gbuffer.display, shot.gbuffer.data);
