@@ -31,11 +31,14 @@ pld_status pld_pass::checkLists(const pld_create_info& info) {
   if (!(info.fragments_per_pixel > 0.0f) || info.fragments_per_pixel > kMostAPixel)
     return fail(PLD_ERROR_ARGUMENT, "pld_create: fragments_per_pixel: found %g, expected more than 0 and at most %g in PLD_TIER_EXACT",
                 static_cast<double>(info.fragments_per_pixel), static_cast<double>(kMostAPixel));
-  GLint bindings = 0, blocks = 0;
+  GLint bindings = 0, blocks = 0, resources = 0;
+  gl.GetIntegerv(GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES, &resources);
   gl.GetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &bindings);
   gl.GetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &blocks);
   if (blocks < listBlocks() || bindings < listBlocks())
     return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d storage blocks for fragments, expected %d", blocks, listBlocks());
+  const int written = listBlocks() + static_cast<int>(planesOf(permutation_).size());  // by what folds the layers
+  if (resources < written) return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d blocks and outputs for a shader, expected %d", resources, written);
   if (info.storage_binding > static_cast<uint32_t>(bindings - listBlocks()))
     return fail(PLD_ERROR_ARGUMENT, "pld_create: storage_binding: found %u, expected at most %d", info.storage_binding, bindings - listBlocks());
   return PLD_OK;

@@ -144,8 +144,9 @@ class Scene {
     }
     return all;
   }
-  std::vector<float> picture() const {
-    const pld_target target = host.target();
+  std::vector<float> picture(pld_view view = PLD_VIEW_PICTURE) const {
+    pld_target target = host.target();
+    target.view = view;
     EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
     return host.picture();
   }
@@ -435,6 +436,32 @@ TEST(BridgeExactFrames, AHostThatRestoresGetsTheSameBits) {
   }
   Scene::flags = 0;
   EXPECT_EQ(differing(pictures[0], pictures[1]), 0u);
+}
+
+// Views are of the same planes, and times of the same stages.
+TEST(BridgeExactFrames, ViewsAndTimersAreThoseOfTheFloatTier) {
+  GlContext context;
+  Scene::flags = PLD_FLAG_DEBUG_VIEWS | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS;
+  for (const Kind& kind : {kKinds[2], kKinds[5]}) {
+    Kind floats = kind;
+    floats.tier = PLD_TIER_FLOAT;
+    Scene exact(kind), blended(floats);
+    ASSERT_EQ(exact.draw(firstTriangles(150)), PLD_OK) << pld_message(exact.pass);
+    ASSERT_EQ(blended.draw(firstTriangles(150)), PLD_OK) << pld_message(blended.pass);
+    double off = 0;
+    int views = 0;
+    for (int view = PLD_VIEW_LAYER_COUNT; view <= PLD_VIEW_LOW_DEPTH; ++view) {
+      const bool whole = kind.features & PLD_FEATURE_LOW_RESOLUTION;  // and rims
+      if (!whole && view > PLD_VIEW_SOLID) break;
+      off = std::max(off, largestDifference(blended.picture(static_cast<pld_view>(view)), exact.picture(static_cast<pld_view>(view))));
+      ++views;
+    }
+    glFinish();
+    EXPECT_GT(exact.query(PLD_VALUE_NS_DRAWS), 0u);
+    std::printf("exact, %s: %d views off the float tier's by %.2g at most\n", kind.what, views, off);
+    EXPECT_LT(off, 2 * kFloatTolerance);  // quotients of two such sums
+  }
+  Scene::flags = 0;
 }
 
 // A context that says it is one of OpenGL 4.2.

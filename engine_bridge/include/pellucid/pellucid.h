@@ -335,7 +335,7 @@ PLD_API pld_status pld_query(pld_pass* pass, pld_value what, uint64_t* value);
 PLD_API pld_status pld_destroy(pld_pass** pass);
 
 /* The GLSL that a material's fragment shader holds for a stage, after its #version line: pldWriteFragment() and the
-   outputs. For GLSL `version` 330 to 460. The text is the pass's and lives until it is asked for again or destroyed. */
+   outputs. For GLSL `version` 330 to 460, in PLD_TIER_EXACT from 430. The text is the pass's and lives until it is asked for again or destroyed. */
 PLD_API pld_status pld_glsl(pld_pass* pass, pld_stage stage, int32_t version, const char** text);
 /* Connects the uniform blocks and samplers of all texts that a linked program holds. Needed once per program below GLSL
    4.20; of PLD_SHADOW_TEXT_LOOKUP after pld_shadow_resize(). */
