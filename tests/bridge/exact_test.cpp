@@ -30,7 +30,10 @@ const Case kCases[] = {
     {"grey", false, false, false, false, false, false, PLD_WEIGHT_BY_EQ5, 2},
     {"grey, light", false, true, false, false, false, false, PLD_WEIGHT_BY_POWER, 2},
     {"grey, refraction, diffusion", false, true, true, true, false, false, PLD_WEIGHT_BY_EQ10Z, 2},
+    {"grey, refraction", false, true, true, false, false, false, PLD_WEIGHT_BY_NONE, 2},
     {"coloured", true, false, false, false, false, false, PLD_WEIGHT_BY_POWER, 2},
+    {"coloured, refraction", true, true, true, false, false, false, PLD_WEIGHT_BY_EQ8Z, 2},
+    {"coloured, diffusion", true, true, false, true, false, false, PLD_WEIGHT_BY_EQ9, 2},
     {"coloured, light", true, true, false, false, false, false, PLD_WEIGHT_BY_POWER, 20},
     {"coloured, solids", true, false, false, false, false, true, PLD_WEIGHT_BY_EQ7, 20},
     {"all phenomena", true, true, true, true, true, true, PLD_WEIGHT_BY_POWER, 20}};
