@@ -28,7 +28,7 @@ struct Library {
   const char* prefix;  // of the include
   Names homes;         // folders that may include it, besides tests
 };
-const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine"}},
+const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine", "samples/stained"}},
                               {"EGL/", {"engine_bridge/gl", "samples/osg"}},
                               {"GL/", {"engine_bridge/gl", "engine_bridge/c", "samples/vtk"}},
                               {"embree3/", {"engine_bridge/embree"}},
