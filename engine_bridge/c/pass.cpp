@@ -41,7 +41,7 @@ uint32_t pld_pass::stagesNeeded() const {
 
 Units pld_pass::unitsOf() const {
   const bool views = permutation_.rimsApart() && (info_.flags & PLD_FLAG_DEBUG_VIEWS);
-  return {0, permutation_.scatters() || views ? 16 : 11};
+  return {0, permutation_.scatters() || permutation_.lowOver() || views ? 16 : 11};
 }
 
 void pld_pass::pushGroup(const char* name) {
@@ -121,7 +121,7 @@ pld_status pld_pass::create(const pld_create_info& info) {
     gl.SamplerParameteri(sampler_, wrap, GL_CLAMP_TO_EDGE);
   gl.SamplerParameteri(sampler_, GL_TEXTURE_COMPARE_MODE, GL_NONE);
   for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
-                        &lowDepthFrame_, &lowTexelFrame_, &targetFrame_}) {
+                        &lowDepthFrame_, &lowTexelFrame_, &lowOverFrame_, &targetFrame_}) {
     gl.GenFramebuffers(1, frame);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, *frame);
   }
@@ -153,7 +153,7 @@ void pld_pass::destroyObjects() {
     program->destroy(gl);
   for (Program& program : folds_) program.destroy(gl);
   for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
-                        &lowDepthFrame_, &lowTexelFrame_, &targetFrame_})
+                        &lowDepthFrame_, &lowTexelFrame_, &lowOverFrame_, &targetFrame_})
     if (*frame) gl.DeleteFramebuffers(1, frame);
   if (vertexArray_) gl.DeleteVertexArrays(1, &vertexArray_);
   if (sampler_) gl.DeleteSamplers(1, &sampler_);

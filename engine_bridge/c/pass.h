@@ -113,9 +113,9 @@ struct pld_pass {
   pellucid::c::Timers timers_;
   pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_, upsample_, viewRims_, viewLow_;
   GLuint vertexArray_ = 0, sampler_ = 0, uniforms_ = 0;
-  GLuint lowFrame_ = 0, lowDepthFrame_ = 0, lowTexelFrame_ = 0, rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
+  GLuint lowFrame_ = 0, lowDepthFrame_ = 0, lowTexelFrame_ = 0, lowOverFrame_ = 0, rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
   std::vector<Plane> planes_, low_;  // of the layers, of those of low resolution
-  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {}, lowFarZ_ = 0, lowTexels_[kLowTexels] = {};
+  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {}, lowFarZ_ = 0, lowTexels_[kLowTexels] = {}, lowOver_[2] = {};
   GLint levels_[kLevels][4] = {};
   int levelCount_ = 0, atlasWidth_ = 0, atlasHeight_ = 0;
   // Exact tier: blocks of shaders/gl/exact_lists.glsl, what each stage's are folded by, and fragments of the newest frame.

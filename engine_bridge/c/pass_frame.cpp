@@ -382,6 +382,8 @@ pld_status pld_pass::resolve(const pld_target& target) {
   for (const Plane& plane : planes_) bind(plane.spec.unit, plane.texture);
   if (planarZ_) bind(5, planarZ_);
   if (solid_) bind(6, solid_);
+  if (permutation_.lowOver())
+    for (GLuint i = 0; i < 2; ++i) bind(11 + i, lowOver_[i]);
   if (levelCount_ > 0 && !isOfParts(target.view)) {
     for (GLuint i = 0; i < kSpreadPlanes; ++i) bind(11 + i, spread_[i]);
     for (GLuint i = 1; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -7,6 +7,7 @@ using namespace pellucid::c;
 Permutation pld_pass::lowPermutation() const {
   Permutation low = permutation_;
   low.atLowResolution = true;
+  low.method = PLD_METHOD_WEIGHTED;  // of one texel
   low.features &= ~static_cast<uint32_t>(PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS);
   return low;
 }
@@ -26,6 +27,7 @@ std::string pld_pass::buildLowPrograms() {
   for (const std::string& place : scatterPlaces(permutation_)) upsample.push_back(place);
   if (permutation_.has(PLD_FEATURE_DISPERSION)) upsample.emplace_back("DISPERSION");
   if (permutation_.tier == PLD_TIER_HALF) upsample.emplace_back("HALF");
+  if (permutation_.lowOver()) upsample.emplace_back("FRONT_TAIL");
   std::string failure = lowDepth_.build(gl, "gl/low_depth.frag", solids);
   // A texel's own light: what it bends and spreads is taken from its sums.
   std::vector<std::string> texel = resolveDefines(lowPermutation());
@@ -64,6 +66,18 @@ bool pld_pass::makeLowTextures(int width, int height) {
   }
   gl.DrawBuffers(kLowTexels, all);
   check();
+  if (!permutation_.lowOver()) return complete;
+  // The sums of the layers, and in place of the nearest what lies before it.
+  GLenum over[kDrawBuffers] = {};
+  for (const Plane& plane : planes_) {
+    const GLuint i = plane.spec.attachment;
+    over[i] = GL_COLOR_ATTACHMENT0 + i;
+    const bool front = i == 6 || i == 7, one = i == 7 && permutation_.grey();
+    if (front) lowOver_[i - 6] = makeTexture(one ? GL_R32F : GL_RGBA32F, width, height, one ? 32 : 128);
+    attach(lowOverFrame_, over[i], front ? lowOver_[i - 6] : plane.texture);
+  }
+  gl.DrawBuffers(kDrawBuffers, over);
+  check();
   return complete;
 }
 
@@ -92,15 +106,19 @@ void pld_pass::addLow() {
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 
   setAccumulation(gl, frame_.width, frame_.height);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, layersFrame_);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, permutation_.lowOver() ? lowOverFrame_ : layersFrame_);
   for (GLuint i = 0; i < kDrawBuffers; ++i) gl.ColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   for (const Plane& plane : planes_) {
     const GLuint i = plane.spec.attachment;
     gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     blend(i, plane.spec.blend);
   }
+  const GLfloat none[4] = {0, 0, 0, 0};
+  if (permutation_.lowOver())
+    for (GLint i = 6; i < kDrawBuffers; ++i) gl.ClearBufferfv(GL_COLOR, i, none);
   for (GLuint i = 0; i < kLowTexels; ++i) bind(i, lowTexels_[i]);
   bind(3, planarZ_);
+  if (permutation_.lowOver()) bind(5, frontZ_);
   if (solid_) bind(4, solid_);
   constexpr GLuint scatterUnits[] = {6, 7, 5, 8};  // of the planes of targets 4 to 7
   for (const Plane& plane : low_)

@@ -31,6 +31,7 @@ void pld_pass::releaseTextures() {
   for (GLuint& one : rims_) release(one);
   for (Plane& plane : low_) release(plane.texture);
   for (GLuint& one : lowTexels_) release(one);
+  for (GLuint& one : lowOver_) release(one);
   release(lowFarZ_);
   releaseLists();
   bytes_ = 0;

@@ -53,8 +53,8 @@ std::string conflictOf(const Permutation& p) {
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
   if (p.low() && p.published())
     return "features: found PLD_FEATURE_LOW_RESOLUTION in PLD_TIER_PUBLISHED, which keeps no depths to upsample by";
-  if (p.low() && p.fronts())
-    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_METHOD_FRONT_TAIL, whose nearest layer is chosen before these are known";
+  if (p.lowOver() && p.exact())
+    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_METHOD_FRONT_TAIL in PLD_TIER_EXACT, which keeps no nearest depth for it";
   return {};
 }
 
@@ -186,6 +186,7 @@ std::vector<std::string> resolveDefines(const Permutation& p) {
   define("LEAN", p.lean());
   define("HALF_SUMS", !p.inFloats());
   define("FRONT_TAIL", p.fronts());
+  define("LOW_OVER", p.lowOver());
   define("SCATTER", p.scatters());
   for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION));

@@ -34,6 +34,7 @@ struct Permutation {
   // The nearest layer that diffuses has a place beside a sum. At low resolution the nearest of all is wanted too.
   bool diffuseInAlpha() const { return has(PLD_FEATURE_DIFFUSION) && !published() && !atLowResolution; }
   bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
+  bool lowOver() const { return low() && fronts(); }  // what lies before the nearest layer has planes of its own
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // From sums of one kind what occlusion hides is taken later; others take rims that are dark already.
   bool rimsInSeam() const { return rims() && (published() || fronts()); }

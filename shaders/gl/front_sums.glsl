@@ -14,3 +14,19 @@ FrontTargets frontAt(ivec2 pixel) {
 #endif
   return targets;
 }
+
+#ifdef LOW_OVER
+layout(binding = 11) uniform sampler2D overRadiance;  // what was drawn at low resolution and lies before the nearest layer
+layout(binding = 12) uniform sampler2D overDepth;
+
+FrontTargets overAt(ivec2 pixel) {
+  FrontTargets targets;
+  targets.radiance = texelFetch(overRadiance, pixel, 0);
+#ifdef GREY
+  targets.depth = vec4(vec3(texelFetch(overDepth, pixel, 0).r), 0.0f);
+#else
+  targets.depth = texelFetch(overDepth, pixel, 0);
+#endif
+  return targets;
+}
+#endif

@@ -93,6 +93,10 @@ VeilHere veilAt(ivec2 pixel) {
 #ifdef FRONT_TAIL
   FrontTargets nearest = frontAt(pixel);
   any = any || nearest.radiance.a != 0.0f;
+#ifdef LOW_OVER
+  FrontTargets over = overAt(pixel);
+  any = any || over.radiance.a != 0.0f;
+#endif
 #endif
 #endif
   vec4 front = solidAt(pixel);
@@ -111,6 +115,9 @@ VeilHere veilAt(ivec2 pixel) {
 #endif
 #ifdef FRONT_TAIL
   veil.resolved = frontOverTail(nearest, veil.resolved);
+#ifdef LOW_OVER
+  veil.resolved = frontOverTail(over, veil.resolved);
+#endif
 #endif
   if (hidesAll) {
     veil.resolved.transparent = overBackground(veil.resolved, vec3(front));

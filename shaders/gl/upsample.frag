@@ -1,6 +1,9 @@
 // The low-resolution texels around a pixel, as one layer of its sums: composite/low_resolution.h, where the planes are.
 #include "shared/low_resolution.glsl"
 #include "gl/sums_output.glsl"
+#ifdef FRONT_TAIL
+#include "gl/front_output.glsl"
+#endif
 
 layout(binding = 0) uniform sampler2D radianceTexels;  // of shaders/gl/low_texel.frag
 layout(binding = 1) uniform sampler2D opacityTexels;
@@ -12,6 +15,9 @@ layout(binding = 5) uniform sampler2D refractionTexels;  // the texels' sums, as
 layout(binding = 6) uniform sampler2D lightTexels;
 layout(binding = 7) uniform sampler2D nearestTexels;
 layout(binding = 8) uniform sampler2D dispersionTexels;
+#endif
+#ifdef FRONT_TAIL
+layout(binding = 5) uniform sampler2D frontZ;  // nearest layer of the whole resolution, +inf for none
 #endif
 
 uniform ivec2 texelCount;
@@ -106,6 +112,18 @@ void main() {
   OitSums added = lowLayerSums(layer, NORMALISATION);
   if (!layer.shows) added.count = 0.0f;
   writeOitSums(added, sums.nearestZ);
+#ifdef FRONT_TAIL
+  // Before the nearest layer it lies over that; else it is one of the others.
+  bool before = layer.layer.z < texelFetch(frontZ, pixel, 0).r;
+  FrontTargets over = packFront(layer.layer, added.depth);
+  frontRadiance = before ? over.radiance : vec4(0.0f);
+#ifdef GREY
+  frontDepth = before ? over.depth.r : 0.0f;
+#else
+  frontDepth = before ? over.depth : vec4(0.0f);
+#endif
+  if (before) writeNothing();
+#endif
 #ifdef SCATTER
   writeScatterAround(sums.share);
 #endif

@@ -38,6 +38,9 @@ void main() {
   largest = max(largest, max(max(sums.denominator.r, sums.denominator.g), sums.denominator.b));
 #ifdef FRONT_TAIL
   count += frontAt(pixel).radiance.a * 0.0625f;
+#ifdef LOW_OVER
+  count += overAt(pixel).radiance.a * 0.0625f;
+#endif
 #endif
 #endif
 #ifdef HALF_SUMS

@@ -270,6 +270,8 @@ TEST(BridgeLow, WrongFactorsAreRefused) {
   EXPECT_EQ(pld_create(&wrong, &pass), PLD_ERROR_UNSUPPORTED);
   wrong = info;
   wrong.method = PLD_METHOD_FRONT_TAIL;
+  wrong.tier = PLD_TIER_EXACT;
+  wrong.fragments_per_pixel = 4.0f;
   EXPECT_EQ(pld_create(&wrong, &pass), PLD_ERROR_UNSUPPORTED);
   pass = host.create(info);
   ASSERT_NE(pass, nullptr);

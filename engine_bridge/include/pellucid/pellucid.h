@@ -94,9 +94,11 @@ typedef PLD_ENUM(pld_feature) {
                                   PLD_METHOD_FRONT_TAIL there is no such stage: the seam of the layers darkens each rim,
                                   and reads a texture more */
   PLD_FEATURE_LOW_RESOLUTION = 128 /* smoke and its like at a part of the resolution: PLD_STAGE_LOW is drawn last. Its
-                                  layers do not hide everything. Not in the published tier, which
-                                  keeps no depths to upsample by, not with PLD_METHOD_FRONT_TAIL, whose nearest layer is
-                                  chosen before these are known; `pellucid composite --low-res` has neither */
+                                  layers do not hide everything. With PLD_METHOD_FRONT_TAIL what they are upsampled to lies over
+                                  the nearest layer where it stands before it. Not in the published tier, which keeps no depths
+                                  to upsample by, nor in the exact tier with PLD_METHOD_FRONT_TAIL, which keeps no nearest depth
+                                  (`pellucid composite` refuses --low-res with --precision published and exact, and with
+                                  --method front+tail, which it works out from all fragments) */
 } pld_feature;
 
 typedef PLD_ENUM(pld_flag) {
