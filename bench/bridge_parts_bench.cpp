@@ -73,16 +73,30 @@ void run() {
   maps.uniform_binding = 5;
   maps.texture_unit = 9;
   need(pld_shadow_resize(pass, &maps), pass);
-  const auto layerOf = [&](pld_stage stage) {
+  // Of these the seam darkens rims itself.
+  info.method = PLD_METHOD_FRONT_TAIL;
+  info.features = PLD_FEATURE_LIGHT | PLD_FEATURE_RIMS;
+  pld_pass *dark = nullptr, *plain = nullptr;
+  need(pld_create(&info, &dark), dark);
+  info.features = PLD_FEATURE_LIGHT;
+  need(pld_create(&info, &plain), plain);
+  for (pld_pass* one : {dark, plain}) need(pld_resize(one, kWidth, kHeight), one);
+  const auto layerFor = [&](pld_pass* of, pld_stage stage) {
     const char* seam = nullptr;
-    need(pld_glsl(pass, stage, 450, &seam), pass);
-    return programOf(seam, R"(
+    need(pld_glsl(of, stage, 450, &seam), of);
+    return programOf(seam, of == plain ? R"(
+void main() {
+  float density = smokeHere();
+  pldWriteFragment(pldSurface(vec3(0.5 * density), density, vec3(0.0), vec3(0.0, 0.0, -3.0 - seed)));
+}
+)" : R"(
 void main() {
   float density = smokeHere();
   pldWriteRim(pldSurface(vec3(0.5 * density), density, vec3(0.0), vec3(0.0, 0.0, -3.0 - seed)), vec3(0.3 * density), pldCoverageGradient(density));
 }
 )");
   };
+  const auto layerOf = [&](pld_stage stage) { return layerFor(pass, stage); };
   const char* caster = nullptr;
   need(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_CASTER, 450, &caster), pass);
   const GLuint layers = layerOf(PLD_STAGE_LAYERS), rims = layerOf(PLD_STAGE_RIMS), low = layerOf(PLD_STAGE_LOW), casters = programOf(caster, R"(
@@ -104,6 +118,15 @@ void main() {
     }
   };
   pld_frame frame = host.frame();
+  // One layer under front+tail; its nearest depth is drawn before.
+  const GLuint programs[2][2] = {{layerFor(plain, PLD_STAGE_FRONT), layerFor(plain, PLD_STAGE_LAYERS)},
+                                 {layerFor(dark, PLD_STAGE_FRONT), layerFor(dark, PLD_STAGE_LAYERS)}};
+  const auto fronted = [&](bool rimmed, bool nearest) {
+    pld_pass* const of = rimmed ? dark : plain;
+    need(pld_begin(of, nearest ? PLD_STAGE_FRONT : PLD_STAGE_LAYERS, &frame), of);
+    draw(programs[rimmed][nearest ? 0 : 1], 1, kWidth, kHeight);
+    need(pld_end(of), of);
+  };
   const auto stage = [&](pld_stage which, GLuint program, int count, int factor) {
     frame.low_factor = factor;
     need(pld_begin(pass, which, &frame), pass);
@@ -134,6 +157,8 @@ void main() {
                           {"the same at 1/8", whole, [&] { stage(PLD_STAGE_LOW, low, kLayers, 8); }, {}},
                           {"upsampling nothing", whole, [&] { stage(PLD_STAGE_LOW, low, 0, 4); }, {}},
                           {"rims on every pixel, one layer of them, darkened", filled, [&] { stage(PLD_STAGE_RIMS, rims, 1, 2); }, {}},
+                          {"a layer under front+tail, without rims", [&] { fronted(false, true); }, [&] { fronted(false, false); }, {}},
+                          {"the same, rims on every pixel, which its seam darkens", [&] { fronted(true, true); }, [&] { fronted(true, false); }, {}},
                           {"no rims", filled, [&] { stage(PLD_STAGE_RIMS, rims, 0, 2); }, {}},
                           {"a coloured shadow map of 512 x 512, 8 casters that fill it", [] {}, [&] { face(kLayers); }, {}},
                           {"the same map, nothing drawn: its filter", [] {}, [&] { face(0); }, {}}};
@@ -144,7 +169,7 @@ void main() {
     }
   std::printf("%dx%d, medians of %d\n| what | ms | over 8 full layers |\n| --- | --- | --- |\n", kWidth, kHeight, kTurns);
   for (const Part& part : parts) std::printf("| %s | %.1f | %.2f |\n", part.what, median(part.times), median(part.times) / median(parts[0].times));
-  pld_destroy(&pass);
+  for (pld_pass** one : {&pass, &dark, &plain}) pld_destroy(one);
 }
 
 }  // namespace
