@@ -287,19 +287,22 @@ void measure(benchmark::State& state, const Kind& kind) {
 constexpr uint32_t kColoured = PLD_FEATURE_COLOURED, kLight = PLD_FEATURE_LIGHT,
                    kScatter = PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION, kSolids = PLD_FEATURE_SOLIDS;
 // All but the exposure, which engines adapt.
-constexpr uint32_t kFixed = PLD_FIXED_UNITS | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION | PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION;
+constexpr uint32_t kFixed = PLD_FIXED_UNITS | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION | PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
 const Kind kKinds[] = {
-    {"lit, float, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter | kSolids, kFixed, 1.3},
-    {"lit, half, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter | kSolids, kFixed, 0},
-    {"lit, half, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter, kFixed, 0},
-    {"lit, half, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
-    {"lit, float, grey, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kLight | kScatter, kFixed, 0},
+    {"lit, float, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter, kFixed, 1.3},
+    {"lit, float, full model, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter, kFixed | PLD_FIXED_EXPOSURE, 1.3},
+    {"lit, float, full model, nothing fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter, 0, 0},
+    {"lit, float, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kLight, kFixed, 1.3},
+    {"lit, float, full model, light that adds, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kLight, kFixed | PLD_FIXED_EXPOSURE, 1.3},
+    {"lit, float, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kSolids, kFixed, 0},
+    {"lit, float, full model, light that adds, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kLight | kSolids, kFixed, 0},
+    {"lit, half, full model, light that adds, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kScatter | kLight | kSolids, kFixed, 0},
+    {"lit, half, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter, kFixed, 0},
+    {"lit, half, refraction, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
+    {"lit, float, grey, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kLight | kScatter, kFixed, 0},
     {"lit, published, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, kScatter | kSolids, kFixed, 0},
-    {"lit, float, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, kFixed, 1.3},
-    {"lit, float, full model, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, kFixed | PLD_FIXED_EXPOSURE, 1.3},
-    {"lit, float, full model, nothing fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | kScatter, 0, 0},
-    {"lit, float, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
-    {"lit, float, diffusion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kLight | PLD_FEATURE_DIFFUSION, kFixed, 0},
+    {"lit, float, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | PLD_FEATURE_REFRACTION, kFixed, 0},
+    {"lit, float, diffusion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | PLD_FEATURE_DIFFUSION, kFixed, 0},
     {"lit, float, coloured, light, solids", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight | kSolids, kFixed, 0},
     {"lit, float, coloured, light", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, kFixed, 1.3},
     {"unlit, float, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0, kFixed, 3},

@@ -43,6 +43,10 @@ std::string load(pld_get_proc_address get, void* user, GlFunctions& gl) {
   gl.GetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
   gl.core = (profile & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
 
+  if (const GLubyte* renderer = getString(GL_RENDERER)) {
+    const std::string name = reinterpret_cast<const char*>(renderer);
+    gl.onProcessor = name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
+  }
   gl.clipControl = gl.version >= 45 || has(gl, "GL_ARB_clip_control");
 
   // A loader may hand out addresses of functions that the context does not have.

@@ -116,6 +116,7 @@ struct GlFunctions {
   PLD_GL_OPTIONAL(PLD_GL_MEMBER)
 #undef PLD_GL_MEMBER
   int version = 0;  // 10 major + minor
+  bool onProcessor = false;  // rasterised by Mesa, without a device
   bool core = false;
   bool clipControl = false;
 };

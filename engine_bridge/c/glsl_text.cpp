@@ -34,11 +34,12 @@ std::string withWords(const std::string& text, F changed) {
   return out;
 }
 
-// What a text declares outside of functions: functions, structs, outputs, constants.
+// What a text declares outside of functions: functions, structs, outputs, constants, variables.
 std::set<std::string> declaredIn(const std::string& text) {
   static const std::regex patterns[] = {
       std::regex(R"(^(?:PLD_FN )?[A-Za-z]\w* (\w+)\()"), std::regex(R"(^struct (\w+))"),
-      std::regex(R"(^layout\(location = \d\) out \w+ (\w+);)"), std::regex(R"(^const \w+ (\w+) =)")};
+      std::regex(R"(^layout\(location = \d\) out \w+ (\w+);)"), std::regex(R"(^const \w+ (\w+) =)"),
+      std::regex(R"(^(?:bool|float|vec\d) (\w+)(?: =|;))")};
   std::set<std::string> names;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
@@ -129,7 +130,7 @@ std::string seamText(const Permutation& permutation, pld_stage stage, int versio
                   {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "DIFFUSE_IN_ALPHA", "NO_DIFFUSE", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
                    "EXACT", "LISTS_OFFSETS", "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "RIMS_HERE", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
                    "ROWS", "UNITS", "EXPOSURE", "ORTHOGRAPHIC", "RANGE_NEAR", "RANGE_FAR", "EXPONENT", "REFRACT", "REFRACT_DISTANCE",
-                   "DIFFUSION_K0", "DIFFUSION_K1"},
+                   "DIFFUSION_K0", "DIFFUSION_K1", "FOCAL_X", "FOCAL_Y"},
                   version, places, {"PLD_SEAM", "pld_", ""});
 }
 

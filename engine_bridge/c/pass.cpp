@@ -66,7 +66,8 @@ pld_status pld_pass::makePrograms() {
   };
   const std::vector<std::string> defines = resolveDefines(permutation_);
   build(picture_, "gl/picture.frag", defines);
-  if (permutation_.planarDepth()) build(planarDepth_, "gl/planar_depth.frag", {});
+  if (gl.onProcessor && permutation_.tier == PLD_TIER_FLOAT) build(emptyPlanes_, "gl/empty_planes.frag", emptyDefines(planesOf(permutation_)));
+  if (permutation_.planarDepth()) build(planarDepth_, "gl/planar_depth.frag", depthDefines(permutation_.depth, info_.clip));
   if (permutation_.has(PLD_FEATURE_DIFFUSION)) build(spreadLevel_, "gl/spread_level.frag", defines);
   if (permutation_.rimsApart()) build(rimsApply_, "gl/rims_apply.frag", defines);
   if (permutation_.low() && failure.empty()) failure = buildLowPrograms();
@@ -84,6 +85,8 @@ pld_status pld_pass::create(const pld_create_info& info) {
   permutation_.method = info.method;
   permutation_.tier = info.tier;
   permutation_.features = info.features;
+  constexpr uint32_t lightByItself = PLD_VERSION_MAJOR << 20 | 4 << 10;
+  if (info.version < lightByItself && permutation_.scatters()) permutation_.features |= PLD_FEATURE_LIGHT;
   permutation_.weight = info.weight;
   permutation_.depth = info.depth;
   permutation_.rows = info.rows;
@@ -149,7 +152,7 @@ void pld_pass::destroyObjects() {
   releaseTextures();
   releaseShadows();
   timers_.destroy(gl);
-  for (Program* program : {&planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_, &lowTexel_, &upsample_, &viewRims_, &viewLow_})
+  for (Program* program : {&emptyPlanes_, &planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_, &lowTexel_, &upsample_, &viewRims_, &viewLow_})
     program->destroy(gl);
   for (Program& program : folds_) program.destroy(gl);
   for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,

@@ -61,6 +61,7 @@ struct pld_pass {
   int shadowChannels() const { return shadowInfo_.coloured ? 3 : 1; }
   void setFrame(const pld_frame& frame, int pixelsATexel);
   void drawPlanarDepth(const pld_frame& frame);
+  void drawEmptyPlanes(const pld_frame& frame);
   void openStage(pld_stage stage, GLuint occlusion);
   void clearStage(pld_stage stage);
   void drawPyramid();
@@ -111,7 +112,7 @@ struct pld_pass {
   pellucid::c::Permutation permutation_;
   pellucid::c::SavedState saved_;
   pellucid::c::Timers timers_;
-  pellucid::c::Program planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_, upsample_, viewRims_, viewLow_;
+  pellucid::c::Program emptyPlanes_, planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_, upsample_, viewRims_, viewLow_;
   GLuint vertexArray_ = 0, sampler_ = 0, uniforms_ = 0;
   GLuint lowFrame_ = 0, lowDepthFrame_ = 0, lowTexelFrame_ = 0, lowOverFrame_ = 0, rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
   std::vector<Plane> planes_, low_;  // of the layers, of those of low resolution

@@ -16,7 +16,7 @@ bool isPositive(float x) {
 }
 
 constexpr uint32_t kEveryField = PLD_FIXED_UNITS | PLD_FIXED_EXPOSURE | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION |
-                                  PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION;
+                                  PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
 constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims", "pellucid low resolution"};
 
 }  // namespace
@@ -40,7 +40,9 @@ pld_status pld_pass::checkOrder(pld_stage stage) {
 // The numbers of a frame; of those that `fields` (pld_fixed) names.
 pld_status pld_pass::checkNumbers(const char* call, const pld_frame& frame, uint32_t fields) {
   const auto has = [&](pld_fixed field) { return (fields & static_cast<uint32_t>(field)) != 0; };
-  if (has(PLD_FIXED_PROJECTION)) {
+  if (has(PLD_FIXED_LENS) && (frame.width < 1 || frame.height < 1))
+    return fail(PLD_ERROR_SIZE, "%s: frame: found %dx%d, expected at least 1x1", call, frame.width, frame.height);
+  if (has(PLD_FIXED_PROJECTION) || has(PLD_FIXED_LENS)) {
     for (const float x : frame.projection)
       if (!std::isfinite(x)) return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection holds a number that is not finite", call);
     if (!isPerspective(frame.projection) && !isOrthographic(frame.projection))
@@ -48,7 +50,9 @@ pld_status pld_pass::checkNumbers(const char* call, const pld_frame& frame, uint
     if (frame.projection[0] == 0.0f || frame.projection[5] == 0.0f)
       return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: a focal length of 0", call);
   }
-  if ((has(PLD_FIXED_UNITS) && !isPositive(frame.metres_per_unit)) || (has(PLD_FIXED_EXPOSURE) && !isPositive(frame.pre_exposure)))
+  // An orthographic lens is in pixels a metre.
+  const bool units = has(PLD_FIXED_UNITS) || (has(PLD_FIXED_LENS) && isOrthographic(frame.projection));
+  if ((units && !isPositive(frame.metres_per_unit)) || (has(PLD_FIXED_EXPOSURE) && !isPositive(frame.pre_exposure)))
     return fail(PLD_ERROR_ARGUMENT, "%s: metres_per_unit %g, pre_exposure %g: expected both > 0", call,
                 static_cast<double>(frame.metres_per_unit), static_cast<double>(frame.pre_exposure));
   if (has(PLD_FIXED_WEIGHT) && (!isPositive(frame.weight_near) || !(frame.weight_far > frame.weight_near) ||
@@ -82,6 +86,7 @@ const char* pld_pass::changedField(const pld_frame& frame) const {
   if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k0 != fixed.diffusion_k0) return "diffusion_k0";
   if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k1 != fixed.diffusion_k1) return "diffusion_k1";
   if (has(PLD_FIXED_PROJECTION) && isOrthographic(frame.projection) != isOrthographic(fixed.projection)) return "projection";
+  if (has(PLD_FIXED_LENS) && (focalOf(frame, 1).x != focalOf(fixed, 1).x || focalOf(frame, 1).y != focalOf(fixed, 1).y)) return "projection";
   return nullptr;
 }
 
@@ -142,10 +147,8 @@ pld_status pld_pass::checkFrame(const pld_frame& frame, bool isFirst, GLenum& at
 }
 
 void pld_pass::setFrame(const pld_frame& frame, int pixelsATexel) {
-  const float halfWidth = 0.5f * static_cast<float>(frame.width), halfHeight = 0.5f * static_cast<float>(frame.height);
   const bool orthographic = isOrthographic(frame.projection);
-  // Offsets are in pixels a metre where nothing converges.
-  const float scale = (orthographic ? 1.0f / frame.metres_per_unit : 1.0f) / static_cast<float>(pixelsATexel);
+  const Focal focal = focalOf(frame, pixelsATexel);
   const GLfloat block[16] = {frame.metres_per_unit,
                              frame.pre_exposure,
                              orthographic ? 1.0f : 0.0f,
@@ -156,8 +159,8 @@ void pld_pass::setFrame(const pld_frame& frame, int pixelsATexel) {
                              static_cast<float>(width_),
                              static_cast<float>(frame.refract),
                              frame.refract_distance,
-                             std::fabs(frame.projection[0]) * halfWidth * scale,
-                             std::fabs(frame.projection[5]) * halfHeight * scale,
+                             focal.x,
+                             focal.y,
                              frame.diffusion_k0,
                              frame.diffusion_k1,
                              static_cast<float>(frame.width),
@@ -177,11 +180,16 @@ void pld_pass::drawPlanarDepth(const pld_frame& frame) {
   bind(0, frame.depth_texture);
   useProgram(planarDepth_);
   const float* p = frame.projection;
-  const bool zeroToOne = info_.clip == PLD_CLIP_ZERO_TO_ONE;
   gl.Uniform4f(planarDepth_.place(gl, "depthRows"), p[10], p[14], p[11], p[15]);
-  gl.Uniform4f(planarDepth_.place(gl, "depthReads"), zeroToOne ? 1.0f : 2.0f, zeroToOne ? 0.0f : -1.0f,
-               permutation_.depth == PLD_DEPTH_REVERSED ? 0.0f : 1.0f, frame.metres_per_unit);
-  gl.Uniform1i(planarDepth_.place(gl, "depthIsLinear"), permutation_.depth == PLD_DEPTH_LINEAR ? 1 : 0);
+  gl.Uniform1f(planarDepth_.place(gl, "metresPerUnit"), frame.metres_per_unit);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+// Where clearing is slower, the layers' planes are filled as a picture is. See empty_planes.frag
+void pld_pass::drawEmptyPlanes(const pld_frame& frame) {
+  setPlainDrawing(gl, frame.width, frame.height);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, layersFrame_);
+  useProgram(emptyPlanes_);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -189,7 +197,7 @@ void pld_pass::drawPlanarDepth(const pld_frame& frame) {
 void pld_pass::clearStage(pld_stage stage) {
   constexpr float far = std::numeric_limits<float>::infinity();
   const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f, none[4] = {0, 0, 0, 0};
-  if (stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW)
+  if ((stage == PLD_STAGE_LAYERS && !emptyPlanes_.name) || stage == PLD_STAGE_LOW)
     for (const Plane& plane : stage == PLD_STAGE_LOW ? low_ : planes_) gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
   if (stage == PLD_STAGE_FRONT) gl.ClearBufferfv(GL_COLOR, 0, nowhere);
   for (GLint i = 0; stage == PLD_STAGE_RIMS && i < kRimPlanes; ++i) gl.ClearBufferfv(GL_COLOR, i, none);
@@ -259,15 +267,13 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
     fragments_ = 0;
   }
   timers_.mark(gl, Timers::markOf(stage, 0));
-  setFrame(frame, stage == PLD_STAGE_LOW ? frame.low_factor : 1);
-  if (first && permutation_.planarDepth()) {
-    drawPlanarDepth(frame);
-    if (saves) saved_.restoreForDraws(gl);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
-  }
-  const bool low = stage == PLD_STAGE_LOW;
-  if (low) {
-    drawLowDepth(frame);
+  const bool low = stage == PLD_STAGE_LOW, planar = first && permutation_.planarDepth(),
+             empties = stage == PLD_STAGE_LAYERS && emptyPlanes_.name;
+  setFrame(frame, low ? frame.low_factor : 1);
+  if (planar) drawPlanarDepth(frame);
+  if (low) drawLowDepth(frame);
+  if (empties) drawEmptyPlanes(frame);
+  if (planar || low || empties) {
     if (saves) saved_.restoreForDraws(gl);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   }

@@ -1,5 +1,6 @@
 #include "engine_bridge/c/permutation.h"
 
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -13,7 +14,7 @@ std::string literal(const char* name, float x) {
   return text;
 }
 
-void defineFixed(const Permutation& p, std::vector<std::string>& defines) {
+void defineFixed(const Permutation& p, pld_stage stage, std::vector<std::string>& defines) {
   const pld_frame& frame = p.fixed;
   const auto has = [&](pld_fixed field) { return (p.fixedFields & static_cast<uint32_t>(field)) != 0; };
   if (has(PLD_FIXED_UNITS)) defines.push_back(literal("UNITS", frame.metres_per_unit));
@@ -28,6 +29,11 @@ void defineFixed(const Permutation& p, std::vector<std::string>& defines) {
     defines.push_back("REFRACT " + std::to_string(static_cast<int>(frame.refract)));
     defines.push_back(literal("REFRACT_DISTANCE", frame.refract_distance));
   }
+  if (has(PLD_FIXED_LENS) && stage != PLD_STAGE_LOW) {  // where it depends on low_factor
+    const Focal focal = focalOf(frame, 1);
+    defines.push_back(literal("FOCAL_X", focal.x));
+    defines.push_back(literal("FOCAL_Y", focal.y));
+  }
   if (has(PLD_FIXED_DIFFUSION)) {
     defines.push_back(literal("DIFFUSION_K0", frame.diffusion_k0));
     defines.push_back(literal("DIFFUSION_K1", frame.diffusion_k1));
@@ -41,6 +47,13 @@ bool isPerspective(const float* p) {
 }
 bool isOrthographic(const float* p) {
   return p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
+}
+
+Focal focalOf(const pld_frame& frame, int pixelsATexel) {
+  // Offsets are in pixels a metre where nothing converges.
+  const float scale = (isOrthographic(frame.projection) ? 1.0f / frame.metres_per_unit : 1.0f) / static_cast<float>(pixelsATexel);
+  return {std::fabs(frame.projection[0]) * (0.5f * static_cast<float>(frame.width)) * scale,
+          std::fabs(frame.projection[5]) * (0.5f * static_cast<float>(frame.height)) * scale};
 }
 
 std::string conflictOf(const Permutation& p) {
@@ -83,24 +96,27 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
   const auto sum = [&](GLuint attachment, GLuint unit) {
     planes.push_back({attachment, four, bits, unit, BlendKind::add, {0, 0, 0, 0}});
   };
-  const auto opacity = [&](GLuint attachment) {
+  // With the nearest layer that diffuses, where there is one.
+  const auto sumAndNearest = [&](GLuint attachment, GLuint unit) {
     if (p.diffuseInAlpha())
-      planes.push_back({attachment, four, bits, 3, BlendKind::alphaMinimum, {0, 0, 0, far}});
+      planes.push_back({attachment, four, bits, unit, BlendKind::alphaMinimum, {0, 0, 0, far}});
     else
-      sum(attachment, 3);
+      sum(attachment, unit);
   };
   sum(0, 1);
-  if (p.lean() && p.grey()) {
+  if (p.lean() && p.grey() && !p.scatters()) {
     planes.push_back({1, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
+  } else if (p.lean() && p.grey()) {
+    sumAndNearest(1, 4);
   } else if (p.lean()) {
     sum(1, 2);
-    sum(2, 4);
+    sumAndNearest(2, 4);
   } else if (p.grey()) {
-    opacity(1);
+    sumAndNearest(1, 3);
     planes.push_back({2, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
   } else {
     sum(1, 2);
-    opacity(2);
+    sumAndNearest(2, 3);
     sum(3, 4);
   }
   if (p.light()) sum(4, 7);
@@ -122,7 +138,7 @@ std::vector<PlaneSpec> planesOf(const Permutation& p) {
 std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   std::vector<std::string> defines{"WEIGHT " + std::to_string(static_cast<int>(p.weight)), "NORMALISATION 0",
                                    p.rows == PLD_ROWS_DOWN ? "ROWS 1.0f" : "ROWS (-1.0f)"};
-  defineFixed(p, defines);
+  defineFixed(p, stage, defines);
   const auto define = [&](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
   };
@@ -171,6 +187,24 @@ std::vector<std::string> foldDefines(const Permutation& p, pld_stage stage) {
     for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
   define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && layers);
   return defines;
+}
+
+std::vector<std::string> emptyDefines(const std::vector<PlaneSpec>& planes) {
+  std::vector<std::string> defines;
+  for (const PlaneSpec& plane : planes) {
+    std::string value;
+    for (const GLfloat x : plane.clear)
+      value += std::string(value.empty() ? "" : ", ") + (std::isinf(x) ? "intBitsToFloat(0x7f800000)" : x == 0.0f ? "0.0f" : "1.0f");
+    defines.push_back("PLANE_" + std::to_string(plane.attachment) + " vec4(" + value + ")");
+  }
+  return defines;
+}
+
+std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip) {
+  if (depth == PLD_DEPTH_LINEAR) return {"DEPTH_IS_LINEAR"};
+  const bool zeroToOne = clip == PLD_CLIP_ZERO_TO_ONE;
+  return {zeroToOne ? "CLIP_SCALE 1.0f" : "CLIP_SCALE 2.0f", zeroToOne ? "CLIP_OFFSET 0.0f" : "CLIP_OFFSET (-1.0f)",
+          depth == PLD_DEPTH_REVERSED ? "EMPTY 0.0f" : "EMPTY 1.0f"};
 }
 
 std::vector<std::string> resolveDefines(const Permutation& p) {

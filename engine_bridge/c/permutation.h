@@ -28,7 +28,7 @@ struct Permutation {
   bool frontStage() const { return fronts() && !exact(); }
   bool published() const { return tier == PLD_TIER_PUBLISHED; }
   bool grey() const { return !published() && !has(PLD_FEATURE_COLOURED); }
-  bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || scatters() || low()); }
+  bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || low()); }
   // No layer adds light: half of the sums are not needed.
   bool lean() const { return !published() && !light(); }
   // The nearest layer that diffuses has a place beside a sum. At low resolution the nearest of all is wanted too.
@@ -47,6 +47,13 @@ struct Permutation {
 // Whether pld_frame.projection, by columns, has clip w = -z; whether it has w = 1.
 bool isPerspective(const float* projection);
 bool isOrthographic(const float* projection);
+
+// What shaders/shared/refraction.glsl takes as focal lengths: pixels, for orthographic views pixels a metre.
+struct Focal {
+  float x, y;
+};
+//   pixelsATexel  of PLD_STAGE_LOW, else 1
+Focal focalOf(const pld_frame& frame, int pixelsATexel);
 
 // Empty when the parts go together, else what does not: a sentence.
 std::string conflictOf(const Permutation& permutation);
@@ -68,8 +75,10 @@ PlaneSpec nearestPlane();  // of low-resolution layers besides
 
 // Of shaders/gl/sums_output.glsl and resolve_here.glsl: what lies where. Without SCATTER, which stages and views choose.
 std::vector<std::string> scatterPlaces(const Permutation& permutation);
-// Defines of shaders/gl/seam.glsl for a stage; of resolve_here.glsl.
+// Defines of shaders/gl/seam.glsl for a stage; of empty_planes.frag; of planar_depth.frag; of resolve_here.glsl.
 std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);
+std::vector<std::string> emptyDefines(const std::vector<PlaneSpec>& planes);
+std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip);
 std::vector<std::string> resolveDefines(const Permutation& permutation);
 // Of the exact tier: which blocks a stage's lists have, from block 0 without a gap; defines of shaders/gl/exact_fold.frag.
 bool listsOffsets(const Permutation& permutation, pld_stage stage);

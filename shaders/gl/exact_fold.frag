@@ -1,5 +1,6 @@
 // A pixel's list to its sums, whose bits do not know in which order the list is. What the list holds goes through the text
 // that writes the planes of the float tier, fragment by fragment; what it would blend is summed here.
+#include "gl/half.glsl"
 #include "shared/diffusion.glsl"
 #include "shared/resolve.glsl"  // as in gl/seam.glsl
 #if defined(STAGE_RIMS)
@@ -72,6 +73,25 @@ void writeOne(uint place, float frontZ) {
 #endif
 }
 
+#ifdef DIFFUSE_IN_ALPHA
+// The nearest layer that diffuses, beside a sum.
+float diffuseZNow() {
+#ifdef LEAN
+  return depthSum.a;
+#else
+  return opacitySum.a;
+#endif
+}
+
+void setDiffuseZ(float z) {
+#ifdef LEAN
+  depthSum.a = z;
+#else
+  opacitySum.a = z;
+#endif
+}
+#endif
+
 // What the outputs hold, of the planes that add.
 vec4[kPlanes] planesNow() {
   vec4 planes[kPlanes];
@@ -82,7 +102,9 @@ vec4[kPlanes] planesNow() {
   planes[i++] = vec4(rimGradient, 0.0f, 0.0f);
 #else
   planes[i++] = radianceSum;
-#ifdef GREY
+#if defined(GREY) && defined(LEAN) && defined(SCATTER)
+  planes[i++] = depthSum;
+#elif defined(GREY)
   planes[i++] = vec4(depthSum, 0.0f, 0.0f);
 #else
   planes[i++] = weightSum;
@@ -118,7 +140,9 @@ void setPlanes(vec4 planes[kPlanes]) {
   rimGradient = planes[i++].xy;
 #else
   radianceSum = planes[i++];
-#ifdef GREY
+#if defined(GREY) && defined(LEAN) && defined(SCATTER)
+  depthSum = planes[i++];
+#elif defined(GREY)
   depthSum = planes[i++].xy;
 #else
   weightSum = planes[i++];
@@ -147,10 +171,10 @@ void setPlanes(vec4 planes[kPlanes]) {
 
 // Planes that keep the nearest: of all layers, of those that diffuse.
 vec2 nearestNow() {
-#if defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
+#if defined(DIFFUSE_IN_ALPHA)
+  return vec2(diffuseZNow());
+#elif defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
   return vec2(0.0f);
-#elif defined(DIFFUSE_IN_ALPHA)
-  return vec2(opacitySum.a);
 #elif defined(SCATTER)
   return nearestZ;
 #else
@@ -159,9 +183,9 @@ vec2 nearestNow() {
 }
 
 void setNearest(vec2 nearest) {
-#if defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
-#elif defined(DIFFUSE_IN_ALPHA)
-  opacitySum.a = nearest.y;
+#if defined(DIFFUSE_IN_ALPHA)
+  setDiffuseZ(nearest.y);
+#elif defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
 #elif defined(SCATTER)
   nearestZ = nearest;
 #else
@@ -185,7 +209,7 @@ void main() {
     writeOne(next - 1u, frontZ);
     nearest = min(nearest, nearestNow());
 #ifdef DIFFUSE_IN_ALPHA
-    opacitySum.a = 0.0f;  // no sum
+    setDiffuseZ(0.0f);  // no sum
 #endif
     vec4 terms[kPlanes] = planesNow();
     for (int i = 0; i < kPlanes; ++i) largest[i] = max(largest[i], abs(terms[i]));
@@ -197,7 +221,7 @@ void main() {
     for (uint next = first; next != 0u; next = pldLinks[links + next]) {
       writeOne(next - 1u, frontZ);
 #ifdef DIFFUSE_IN_ALPHA
-      opacitySum.a = 0.0f;
+      setDiffuseZ(0.0f);
 #endif
       vec4 terms[kPlanes] = planesNow();
       for (int i = 0; i < kPlanes; ++i) sums[i] = addedTo(sums[i], terms[i]);

@@ -138,14 +138,23 @@ VeilHere veilAt(ivec2 pixel) {
 #ifdef PUBLISHED
   vec2 depths = vec2(0.0f);  // no depth says what stands in front
 #else
-#if defined(DIFFUSE_IN_ALPHA)
+#if defined(DIFFUSE_IN_ALPHA) && defined(LEAN)
+  float diffuseZ = texelFetch(depthSum, pixel, 0).a;
+#elif defined(DIFFUSE_IN_ALPHA)
   float diffuseZ = texelFetch(opacitySum, pixel, 0).a;
 #elif defined(NO_DIFFUSE)
   float diffuseZ = intBitsToFloat(0x7f800000);
 #else
   float diffuseZ = texelFetch(nearestZ, pixel, 0).g;
 #endif
-  vec2 depths = vec2(texelFetch(lightSum, pixel, 0).a, diffuseZ);
+#if defined(LEAN) && defined(GREY)
+  float refractionZ = texelFetch(depthSum, pixel, 0).z;
+#elif defined(LEAN)
+  float refractionZ = texelFetch(weightSum, pixel, 0).a;
+#else
+  float refractionZ = texelFetch(lightSum, pixel, 0).a;
+#endif
+  vec2 depths = vec2(refractionZ, diffuseZ);
 #endif
   vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel);
   precise vec3 shown = veil.resolved.transmission * throughOnly(veil.resolved.transmission, vec3(seen));

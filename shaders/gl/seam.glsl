@@ -1,6 +1,7 @@
 #pragma once
 // What an engine's material shader holds: the outputs of a stage, and pldWriteFragment(), which it calls where it would
 // write a colour. Defines choose the stage (STAGE_SOLIDS, STAGE_FRONT, STAGE_RIMS, else the layers) and the planes.
+#include "gl/half.glsl"
 #include "shared/diffusion.glsl"
 #include "shared/resolve.glsl"  // here: what is first included inside of a condition is there under it alone
 #if defined(STAGE_RIMS) || defined(RIMS_HERE)
@@ -55,6 +56,10 @@ PLD_FRAME_LAYOUT uniform PldFrame {
 #define REFRACT int(pldRefraction.x)
 #define REFRACT_DISTANCE pldRefraction.y
 #endif
+#ifndef FOCAL_X
+#define FOCAL_X pldRefraction.z
+#define FOCAL_Y pldRefraction.w
+#endif
 #ifndef DIFFUSION_K0
 #define DIFFUSION_K0 pldDiffusion.x
 #define DIFFUSION_K1 pldDiffusion.y
@@ -70,6 +75,17 @@ PLD_UNIT_3 uniform sampler2D pldOpaqueOpen;  // ambient occlusion of what is opa
 vec4 seamTexel(sampler2D plane) {
   return textureLod(plane, gl_FragCoord.xy / vec2(textureSize(plane, 0)), 0.0f);
 }
+
+// Looked up before main(): a CPU then waits for memory beside the host's shading and not after it.
+#if defined(SCATTER) || defined(DEPTH_IN_SHADER)
+float seamOpaqueZ = seamTexel(pldOpaqueZ).r;
+#endif
+#ifdef SOLIDS
+float seamSolidZ = seamTexel(pldSolid).a;
+#endif
+#ifdef FRONT_TAIL
+float seamFrontZ = seamTexel(pldFrontZ).r;
+#endif
 
 // One shaded transparent surface under this fragment.
 struct PldSurface {
@@ -116,7 +132,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
                    vec4 dispersion) {
   if (!(z > 0.0f)) discard;
 #ifdef DEPTH_IN_SHADER
-  if (z > seamTexel(pldOpaqueZ).r) discard;
+  if (z > seamOpaqueZ) discard;
 #endif
   Layer layer;
   layer.radiance = clamp(radiance, vec3(0.0f), vec3(1e20f));
@@ -133,7 +149,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
 #endif
 #else
 #ifdef SOLIDS
-  if (isSolid(layer.coverage, layer.transmission) || z > seamTexel(pldSolid).a) discard;
+  if (isSolid(layer.coverage, layer.transmission) || z > seamSolidZ) discard;
 #endif
 #if defined(STAGE_FRONT)
   frontZ = z;
@@ -160,7 +176,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   writePublished(layer, scatter, seamWeight());
 #else
 #ifdef FRONT_TAIL
-  writeFrontOrTail(layer, seamWeight(), isFront(z, seamTexel(pldFrontZ).r));
+  writeFrontOrTail(layer, seamWeight(), isFront(z, seamFrontZ));
 #else
   writeSums(layer, seamWeight());
 #endif
@@ -178,27 +194,26 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
 #ifdef SCATTER
 // Depth of what stands behind all layers, planar metres.
 float seamBackdropZ() {
-  float z = seamTexel(pldOpaqueZ).r;
 #ifdef SOLIDS
-  z = min(z, seamTexel(pldSolid).a);
+  return min(seamOpaqueZ, seamSolidZ);
+#else
+  return seamOpaqueZ;
 #endif
-  return z;
 }
 
 RefractionSettings seamRefraction() {
   RefractionSettings settings;
   settings.mode = REFRACT;
   settings.distance = REFRACT_DISTANCE;
-  settings.focalX = pldRefraction.z;
-  settings.focalY = pldRefraction.w;
+  settings.focalX = FOCAL_X;
+  settings.focalY = FOCAL_Y;
   settings.orthographic = ORTHOGRAPHIC;
   return settings;
 }
 
-//   backdropZ  seamBackdropZ(), fetched once for all that ask
-vec2 seamOffset(PldSurface surface, float eta, float backdropZ) {
+vec2 seamOffset(PldSurface surface, float eta) {
   vec3 toEye = ORTHOGRAPHIC != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-surface.position);
-  return refractionOffset(seamRefraction(), surface.position * UNITS, toEye, surface.normal, eta, backdropZ,
+  return refractionOffset(seamRefraction(), surface.position * UNITS, toEye, surface.normal, eta, seamBackdropZ(),
                           surface.thickness * UNITS);
 }
 #endif
@@ -208,17 +223,15 @@ void pldWriteFragment(PldSurface surface) {
   float variance = 0.0f;
   vec4 dispersion = vec4(0.0f);
   float z = -surface.position.z * UNITS;
-#ifdef SCATTER
-  float backdropZ = seamBackdropZ();
 #ifdef REFRACTS
   // Entering faces only: along the ray that has not been bent, back faces would reflect all.
   if (gl_FrontFacing && surface.eta != 1.0f && REFRACT != PLD_REFRACT_OFF) {
-    vec2 green = seamOffset(surface, surface.eta, backdropZ);
+    vec2 green = seamOffset(surface, surface.eta);
     offset = recordedOffset(green);
 #ifdef DISPERSION
     if (surface.etaRedBlue != vec2(surface.eta))
-      dispersion = vec4(seamOffset(surface, surface.etaRedBlue.x, backdropZ) - green,
-                        seamOffset(surface, surface.etaRedBlue.y, backdropZ) - green);
+      dispersion = vec4(seamOffset(surface, surface.etaRedBlue.x) - green,
+                        seamOffset(surface, surface.etaRedBlue.y) - green);
 #endif
   }
 #endif
@@ -227,11 +240,10 @@ void pldWriteFragment(PldSurface surface) {
   settings.k0 = DIFFUSION_K0;
   settings.k1 = DIFFUSION_K1;
   settings.netCoverage = 0;
-  settings.focalPixels = pldRefraction.z;
+  settings.focalPixels = FOCAL_X;
   settings.orthographic = ORTHOGRAPHIC;
   variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), clamp(surface.transmission, vec3(0.0f), vec3(1.0f)),
-                           clamp(surface.collimation, 0.0f, 1.0f), z, backdropZ);
-#endif
+                           clamp(surface.collimation, 0.0f, 1.0f), z, seamBackdropZ());
 #endif
   pldWriteLayer(surface.radiance * EXPOSURE, surface.coverage, surface.transmission, z, offset, variance, dispersion);
 }

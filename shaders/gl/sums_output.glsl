@@ -4,6 +4,7 @@
 // nearest layer that diffuses is the alpha of the opacities, MIN, in place of what nobody reads then; NO_DIFFUSE, no layer
 // does.
 #include "shared/refraction.glsl"
+#include "gl/half.glsl"
 
 layout(location = 0) out vec4 radianceSum;
 #ifdef GREY
@@ -59,8 +60,7 @@ void writeSums(Layer layer, WeightSettings settings) {
 //   z  of a layer that diffuses, else +inf
 void writeDiffuseZ(float z) {
 #if defined(DIFFUSE_IN_ALPHA) && defined(HALF)
-  // Rounded to a half, towards the eye: what lies behind the layer must not come to lie before it.
-  opacitySum.a = intBitsToFloat(floatBitsToInt(z) & ~0x1fff);
+  opacitySum.a = towardsEye(z);
 #elif defined(DIFFUSE_IN_ALPHA)
   opacitySum.a = z;
 #elif !defined(NO_DIFFUSE)

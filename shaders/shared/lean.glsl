@@ -4,8 +4,8 @@
 
 struct LeanTargets {
   vec4 radiance;  // A.rgb, layers; grey: A.rgb, W
-  vec4 weight;    // W.rgb, unused; grey: not kept
-  vec4 depth;     // tau.rgb, unused; grey: tau, layers
+  vec4 weight;    // W.rgb, refraction's depth where layers refract; grey: not kept
+  vec4 depth;     // tau.rgb, unused; grey: tau, layers, refraction's depth, unused. The alpha may hold the nearest that diffuses
 };
 
 PLD_FN LeanTargets packLean(OitSums sums, bool grey) {

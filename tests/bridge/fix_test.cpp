@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 96, kHeight = 64;
 constexpr uint32_t kEverything = PLD_FIXED_UNITS | PLD_FIXED_EXPOSURE | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION |
-                                 PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION;
+                                 PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
 
 // Six tilted panes that fill the picture, one vertex shader run for each of their corners.
 const char* const kVertex = R"(
@@ -151,17 +151,20 @@ TEST(BridgeFix, FramesKeepToWhatIsFixed) {
   EXPECT_EQ(pld_fix(nullptr, &good, 0), PLD_ERROR_ARGUMENT);
   EXPECT_EQ(pld_fix(pass, nullptr, 0), PLD_ERROR_ARGUMENT);
   refused([](auto& f) { f.struct_size = 3; }, 0, PLD_ERROR_VERSION, "struct_size");
-  refused([](auto&) {}, 64, PLD_ERROR_ARGUMENT, "fields");
+  refused([](auto&) {}, 128, PLD_ERROR_ARGUMENT, "fields");
   refused([](auto& f) { f.metres_per_unit = 0; }, PLD_FIXED_UNITS, PLD_ERROR_ARGUMENT, "metres_per_unit");
   refused([](auto& f) { f.pre_exposure = -1; }, PLD_FIXED_EXPOSURE, PLD_ERROR_ARGUMENT, "pre_exposure");
   refused([](auto& f) { f.weight_exponent = nan; }, PLD_FIXED_WEIGHT, PLD_ERROR_ARGUMENT, "exponent");
   refused([](auto& f) { f.refract = static_cast<pld_refract>(9); }, PLD_FIXED_REFRACTION, PLD_ERROR_ARGUMENT, "refract");
   refused([](auto& f) { f.diffusion_k1 = 0; }, PLD_FIXED_DIFFUSION, PLD_ERROR_ARGUMENT, "diffusion_k1");
   refused([](auto& f) { f.projection[11] = 3; }, PLD_FIXED_PROJECTION, PLD_ERROR_ARGUMENT, "projection");
+  refused([](auto& f) { f.projection[0] = 0; }, PLD_FIXED_LENS, PLD_ERROR_ARGUMENT, "projection");
+  refused([](auto& f) { f.width = 0; }, PLD_FIXED_LENS, PLD_ERROR_SIZE, "0x24");
+  refused([](auto& f) { f.projection[11] = 0, f.projection[15] = 1, f.metres_per_unit = 0; }, PLD_FIXED_LENS, PLD_ERROR_ARGUMENT, "metres_per_unit");
   pld_frame nonsense = good;  // of what is not named nothing is read
   nonsense.metres_per_unit = nonsense.diffusion_k1 = nan;
   EXPECT_EQ(pld_fix(pass, &nonsense, PLD_FIXED_WEIGHT), PLD_OK) << pld_message(pass);
-  ASSERT_EQ(pld_fix(pass, &good, kEverything & ~static_cast<uint32_t>(PLD_FIXED_EXPOSURE)), PLD_OK) << pld_message(pass);
+  ASSERT_EQ(pld_fix(pass, &good, kEverything & ~static_cast<uint32_t>(PLD_FIXED_EXPOSURE | PLD_FIXED_LENS)), PLD_OK) << pld_message(pass);
   const char* seam = nullptr;
   ASSERT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, 450, &seam), PLD_OK);
   EXPECT_EQ(pld_fix(pass, &good, 0), PLD_ERROR_ORDER);
@@ -184,6 +187,31 @@ TEST(BridgeFix, FramesKeepToWhatIsFixed) {
   begins([](auto& f) { f.diffusion_k1 = 0.1f; }, PLD_ERROR_ARGUMENT, "diffusion_k1");
   begins([](auto& f) { f.projection[11] = 0, f.projection[15] = 1; }, PLD_ERROR_ARGUMENT, "projection");
   begins([](auto& f) { f.projection[0] *= 2, f.pre_exposure = 3; }, PLD_OK, "");
+  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+}
+
+TEST(BridgeFix, TheLensIsFocalLengthsInPixels) {
+  GlContext context;
+  Host host(32, 24);
+  pld_create_info info = host.info();
+  info.features = PLD_FEATURE_REFRACTION;
+  pld_pass* pass = host.create(info);
+  ASSERT_NE(pass, nullptr);
+  const pld_frame good = host.frame();
+  ASSERT_EQ(pld_fix(pass, &good, PLD_FIXED_LENS), PLD_OK) << pld_message(pass);
+  const auto begins = [&](auto change, pld_status expected) {
+    pld_frame frame = good;
+    change(frame);
+    EXPECT_EQ(pld_begin(pass, PLD_STAGE_LAYERS, &frame), expected) << pld_message(pass);
+    if (expected == PLD_OK) {
+      EXPECT_EQ(pld_end(pass), PLD_OK);
+    }
+  };
+  begins([](auto& f) { f.projection[0] *= 2; }, PLD_ERROR_ARGUMENT);
+  begins([](auto& f) { f.projection[5] *= 0.5f; }, PLD_ERROR_ARGUMENT);
+  begins([](auto& f) { f.width /= 2; }, PLD_ERROR_ARGUMENT);
+  begins([](auto& f) { f.width /= 2, f.projection[0] *= 2; }, PLD_OK);
+  begins([](auto& f) { f.projection[5] *= -1, f.projection[8] = 0.01f, f.metres_per_unit = 2; }, PLD_OK);
   EXPECT_EQ(pld_destroy(&pass), PLD_OK);
 }
 

@@ -17,6 +17,8 @@ uniform sampler2D background;
 uniform vec4 radianceSum;
 float meanOf(vec3 v) { return v.x; }
 float SCATTER_GREY = 1.0;
+float seamOpaqueZ, seamSolidZ, seamFrontZ;
+vec2 seamGradient;
 in vec3 viewPosition;
 void main() {
   Layer layer;
@@ -63,6 +65,8 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
                         {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, PLD_FEATURE_DIFFUSION},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, all & ~static_cast<uint32_t>(PLD_FEATURE_LIGHT)},
+                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION | PLD_FEATURE_SOLIDS},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, 0},
                         {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS | PLD_FEATURE_SOLIDS},
@@ -84,7 +88,7 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
       ASSERT_NE(pass, nullptr);
       // Half of them with constants in place of the block's numbers.
       const pld_frame frame = host.frame();
-      ASSERT_EQ(pld_fix(pass, &frame, depth == PLD_DEPTH_LINEAR ? 63u : 0u), PLD_OK) << pld_message(pass);
+      ASSERT_EQ(pld_fix(pass, &frame, depth == PLD_DEPTH_LINEAR ? 127u : 0u), PLD_OK) << pld_message(pass);
       for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW})
         for (const int version : {330, 400, 410, 420, 430, 440, 450, 460}) {
           const char* seam = nullptr;

@@ -19,7 +19,8 @@
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR 4 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,
                                rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,
-                               the exact tier.
+                               the exact tier; refraction and diffusion without PLD_FEATURE_LIGHT keep no light that adds,
+                               which is implied for hosts of before.
                                A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -85,7 +86,7 @@ typedef PLD_ENUM(pld_feature) {
   PLD_FEATURE_COLOURED = 1,   /* some material transmits colour; without it one opacity serves all channels */
   PLD_FEATURE_LIGHT = 2,      /* some material adds light: coverage 0, or transmission above .999 in a channel;
                                  without it such light is lost */
-  PLD_FEATURE_REFRACTION = 4, /* the plane of light comes with it, and with diffusion */
+  PLD_FEATURE_REFRACTION = 4, /* clear glass, which lets more than .999 through, needs PLD_FEATURE_LIGHT besides */
   PLD_FEATURE_DIFFUSION = 8,
   PLD_FEATURE_DISPERSION = 16, /* refraction of its own for red and blue; not in the published tier */
   PLD_FEATURE_SOLIDS = 32,     /* some fragments hide everything: PLD_STAGE_SOLIDS is drawn before the layers */
@@ -194,7 +195,9 @@ typedef PLD_ENUM(pld_fixed) {
   PLD_FIXED_WEIGHT = 4,      /* weight_near, weight_far, weight_exponent */
   PLD_FIXED_REFRACTION = 8,  /* refract, refract_distance */
   PLD_FIXED_DIFFUSION = 16,  /* diffusion_k0, diffusion_k1 */
-  PLD_FIXED_PROJECTION = 32  /* whether projection is perspective or orthographic; its numbers may change */
+  PLD_FIXED_PROJECTION = 32, /* whether projection is perspective or orthographic; its numbers may change */
+  PLD_FIXED_LENS = 64        /* projection[0] * width and projection[5] * height but for their signs, and metres_per_unit where
+                                projection is orthographic */
 } pld_fixed;
 
 typedef PLD_ENUM(pld_stage) {
