@@ -208,7 +208,7 @@ std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip) {
 }
 
 std::vector<std::string> resolveDefines(const Permutation& p) {
-  std::vector<std::string> defines{"PART_OF_TEXTURE", "NO_SELF_MODULATION"};
+  std::vector<std::string> defines{"PART_OF_TEXTURE", "NEAREST_SAMPLERS", "NO_SELF_MODULATION"};
   const auto define = [&](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
   };

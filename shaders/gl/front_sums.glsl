@@ -6,11 +6,11 @@ layout(binding = 10) uniform sampler2D frontDepth;
 
 FrontTargets frontAt(ivec2 pixel) {
   FrontTargets targets;
-  targets.radiance = texelFetch(frontRadiance, pixel, 0);
+  targets.radiance = texelHere(frontRadiance, pixel);
 #ifdef GREY
-  targets.depth = vec4(vec3(texelFetch(frontDepth, pixel, 0).r), 0.0f);
+  targets.depth = vec4(vec3(texelHere(frontDepth, pixel).r), 0.0f);
 #else
-  targets.depth = texelFetch(frontDepth, pixel, 0);
+  targets.depth = texelHere(frontDepth, pixel);
 #endif
   return targets;
 }
@@ -21,11 +21,11 @@ layout(binding = 12) uniform sampler2D overDepth;
 
 FrontTargets overAt(ivec2 pixel) {
   FrontTargets targets;
-  targets.radiance = texelFetch(overRadiance, pixel, 0);
+  targets.radiance = texelHere(overRadiance, pixel);
 #ifdef GREY
-  targets.depth = vec4(vec3(texelFetch(overDepth, pixel, 0).r), 0.0f);
+  targets.depth = vec4(vec3(texelHere(overDepth, pixel).r), 0.0f);
 #else
-  targets.depth = texelFetch(overDepth, pixel, 0);
+  targets.depth = texelHere(overDepth, pixel);
 #endif
   return targets;
 }

@@ -5,7 +5,7 @@ layout(location = 0) out vec4 picture;
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 own = texelFetch(background, pixel, 0);
+  vec4 own = texelHere(background, pixel);
   VeilHere veil = veilAt(pixel);
   picture = own;
   if (veil.kind == 0) return;

@@ -1,9 +1,20 @@
 #pragma once
 // Sums to what transparency does to a pixel: fetch and resolve through the shared model. Defines say how the sums lie:
 // GREY, LEAN, PUBLISHED, FRONT_TAIL, else one plane per sum; and which planes there are: NO_LIGHT, SCATTER, DISPERSION.
+// NEAREST_SAMPLERS: textures are looked up at their nearest texels.
 #include "gl/lookup.glsl"
 #include "shared/lean.glsl"
 #include "shared/picture.glsl"
+
+// `pixel` is the one under this fragment.
+vec4 texelHere(sampler2D plane, ivec2 pixel) {
+#ifdef NEAREST_SAMPLERS
+  // A rasteriser on a CPU takes this for less than a fetch, which asks for its level.
+  return textureLod(plane, gl_FragCoord.xy / vec2(textureSize(plane, 0)), 0.0f);
+#else
+  return texelFetch(plane, pixel, 0);
+#endif
+}
 
 #ifndef PUBLISHED
 layout(binding = 1) uniform sampler2D radianceSum;
@@ -36,13 +47,13 @@ struct VeilHere {
 #ifdef LEAN
 OitSums sumsAt(ivec2 pixel) {
   LeanTargets targets;
-  targets.radiance = texelFetch(radianceSum, pixel, 0);
-  targets.depth = texelFetch(depthSum, pixel, 0);
+  targets.radiance = texelHere(radianceSum, pixel);
+  targets.depth = texelHere(depthSum, pixel);
 #ifdef GREY
   targets.weight = vec4(0.0f);
   return unpackLean(targets, true);
 #else
-  targets.weight = texelFetch(weightSum, pixel, 0);
+  targets.weight = texelHere(weightSum, pixel);
   return unpackLean(targets, false);
 #endif
 }
@@ -51,25 +62,25 @@ OitTargets targetsAt(ivec2 pixel) {
 #ifdef NO_LIGHT
   vec4 light = vec4(0.0f);
 #else
-  vec4 light = texelFetch(lightSum, pixel, 0);
+  vec4 light = texelHere(lightSum, pixel);
 #endif
 #ifdef GREY
   GreyTargets grey;
-  grey.radiance = texelFetch(radianceSum, pixel, 0);
-  grey.opacity = texelFetch(opacitySum, pixel, 0);
+  grey.radiance = texelHere(radianceSum, pixel);
+  grey.opacity = texelHere(opacitySum, pixel);
 #ifdef DIFFUSE_IN_ALPHA
   grey.opacity.a = grey.opacity.z;  // the count
   grey.opacity.z = 0.0f;
 #endif
-  vec4 depth = texelFetch(depthSum, pixel, 0);
+  vec4 depth = texelHere(depthSum, pixel);
   grey.depth = vec2(depth.x, depth.y);
   return unpackGrey(grey, light);
 #else
   OitTargets targets;
-  targets.radiance = texelFetch(radianceSum, pixel, 0);
-  targets.weight = texelFetch(weightSum, pixel, 0);
-  targets.opacity = texelFetch(opacitySum, pixel, 0);
-  targets.depth = texelFetch(depthSum, pixel, 0);
+  targets.radiance = texelHere(radianceSum, pixel);
+  targets.weight = texelHere(weightSum, pixel);
+  targets.opacity = texelHere(opacitySum, pixel);
+  targets.depth = texelHere(depthSum, pixel);
   targets.light = light;
   return targets;
 #endif
@@ -133,26 +144,26 @@ VeilHere veilAt(ivec2 pixel) {
   choice.largestSpread = largestSpread;
   vec4 dispersion = vec4(0.0f);
 #ifdef DISPERSION
-  dispersion = dispersionOf(texelFetch(dispersionSum, pixel, 0), path.z);
+  dispersion = dispersionOf(texelHere(dispersionSum, pixel), path.z);
 #endif
 #ifdef PUBLISHED
   vec2 depths = vec2(0.0f);  // no depth says what stands in front
 #else
 #if defined(DIFFUSE_IN_ALPHA) && defined(LEAN)
-  float diffuseZ = texelFetch(depthSum, pixel, 0).a;
+  float diffuseZ = texelHere(depthSum, pixel).a;
 #elif defined(DIFFUSE_IN_ALPHA)
-  float diffuseZ = texelFetch(opacitySum, pixel, 0).a;
+  float diffuseZ = texelHere(opacitySum, pixel).a;
 #elif defined(NO_DIFFUSE)
   float diffuseZ = intBitsToFloat(0x7f800000);
 #else
-  float diffuseZ = texelFetch(nearestZ, pixel, 0).g;
+  float diffuseZ = texelHere(nearestZ, pixel).g;
 #endif
 #if defined(LEAN) && defined(GREY)
-  float refractionZ = texelFetch(depthSum, pixel, 0).z;
+  float refractionZ = texelHere(depthSum, pixel).z;
 #elif defined(LEAN)
-  float refractionZ = texelFetch(weightSum, pixel, 0).a;
+  float refractionZ = texelHere(weightSum, pixel).a;
 #else
-  float refractionZ = texelFetch(lightSum, pixel, 0).a;
+  float refractionZ = texelHere(lightSum, pixel).a;
 #endif
   vec2 depths = vec2(refractionZ, diffuseZ);
 #endif
