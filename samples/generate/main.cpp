@@ -69,7 +69,7 @@ void run(int count, char** arguments) {
     counts.particles = static_cast<std::uint32_t>(numberOf(arguments[count - 1], "--particles", kMostParticles));
     count -= 2;
   }
-  if (count < 2 || count > 4)
+  if (count < 2 || count > 4 || arguments[1][0] == '-')
     throw UsageError("expected OUTDIR [NAME|all [HEIGHT]] [--hairs N | --particles N], NAME one of " + names());
   const std::string folder = arguments[1], wanted = count > 2 ? arguments[2] : "all";
   const int height = count > 3 ? numberOf(arguments[3], "HEIGHT", kTallest) : 0;

@@ -75,6 +75,14 @@ TEST_F(Samples, AnUnknownNameIsRefused) {
   EXPECT_TRUE(filesIn(folder).empty());
 }
 
+// And no folder of that name is made.
+TEST_F(Samples, AFlagIsNoFolder) {
+  const Ended ended = generate("bars", "--help");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_NE(ended.err.find("expected OUTDIR"), std::string::npos) << ended.err;
+  EXPECT_TRUE(filesIn(folder).empty());
+}
+
 TEST_F(Samples, AnUnfitHeightIsRefused) {
   for (const char* height : {"0", "-9", "9999999999", "90x", "", "100"}) {
     const Ended ended = generate("bars", ".", {height});
