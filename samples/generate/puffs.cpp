@@ -40,10 +40,10 @@ Image<glm::vec4> puff(std::uint32_t seed) {
   return texels;
 }
 
-void addCloud(Glb& glb, const Cloud& cloud, const std::vector<Card>& cards) {
+void addCloud(Glb& glb, const Cloud& cloud, const std::vector<PuffCard>& cards) {
   Mesh meshes[kPuffs];
   for (std::size_t i = 0; i < cards.size(); ++i) {
-    const Card& card = cards[i];
+    const PuffCard& card = cards[i];
     const double spin = 2.0 * glm::pi<double>() * unit(hash(static_cast<std::uint32_t>(i), 1, cloud.seed));
     const glm::dvec3 right = card.edge * glm::dvec3(std::cos(spin), std::sin(spin), 0.0);
     const glm::dvec3 up(-right.y, right.x, 0.0);

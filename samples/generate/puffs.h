@@ -18,13 +18,13 @@ struct Cloud {
 };
 
 // A card: its middle, its edge in metres, its colour (linear).
-struct Card {
+struct PuffCard {
   glm::dvec3 middle{0.0};
   double edge = 1.0;
   glm::dvec3 colour{1.0};
 };
 
 // Adds the cards, turned about +z by a hash of their number, as meshes of two textures.
-void addCloud(Glb& glb, const Cloud& cloud, const std::vector<Card>& cards);
+void addCloud(Glb& glb, const Cloud& cloud, const std::vector<PuffCard>& cards);
 
 }  // namespace pellucid::samples

@@ -50,7 +50,7 @@ Sample mixed() {
     sample.glb.addMesh(each.name, lathe(goblet(), 6, 48), sample.glb.addMaterial(thinGlass(each.name, each.colour)),
                        each.place);
 
-  std::vector<Card> smoke;
+  std::vector<PuffCard> smoke;
   for (std::uint32_t i = 0; i < kCards; ++i) {
     const auto random = [&](std::uint32_t what) { return unit(hash(i, what, 23)); };
     const double height = random(0) * random(0);

@@ -62,7 +62,7 @@ Sample street() {
   studio.shapes = {{ShapeKind::box, {0.0, -0.05, -20.0}, {40.0, 0.05, 40.0}, 0.0,
                     checker({0.2, 0.2, 0.21}, {0.16, 0.16, 0.17}, 0.8)}};
   addHouses(studio.shapes);
-  std::vector<Card> halos;
+  std::vector<PuffCard> halos;
   for (int i = 0; i < kLamps; ++i)
     for (int side : {-1, 1}) {
       const double x = side * kLampX, z = lampZ(i);
@@ -72,7 +72,7 @@ Sample street() {
       halos.push_back({{x, kLampHeight, z + 0.3}, 1.7, {0.5, 0.34, 0.15}});
     }
 
-  std::vector<Card> fog;
+  std::vector<PuffCard> fog;
   for (std::uint32_t bank = 0; bank < kBanks; ++bank)
     for (std::uint32_t i = 0; i < kCardsInBank; ++i) {
       const auto random = [&](std::uint32_t what) { return unit(hash(bank * kCardsInBank + i, what, 41)); };
