@@ -106,6 +106,18 @@ TEST(Planted, LinesAreCountedThroughComments) {
   EXPECT_EQ(found[0].rfind("shaders/shared/planted.glsl:4: ", 0), 0u) << found[0];
 }
 
+TEST(Planted, TwoTypesOfOneNameAreFound) {
+  const auto twice = [](const char* first, const char* second) {
+    return definedTwice({{"samples/a.h", first}, {"samples/b.h", second}}).size();
+  };
+  const char* card = "namespace pellucid::samples {\nstruct Card {\n};\n}  // namespace pellucid::samples\n";
+  EXPECT_EQ(twice(card, card), 1u);
+  EXPECT_EQ(twice(card, "namespace pellucid::samples {\nclass Card final : public Paper {\n};\n}  // namespace pellucid::samples\n"), 1u);
+  EXPECT_EQ(twice(card, "namespace pellucid::test {\nstruct Card {\n};\n}  // namespace pellucid::test\n"), 0u);
+  EXPECT_EQ(twice(card, "namespace pellucid::samples {\nnamespace {\nstruct Card {\n};\n}  // namespace\n}  // namespace pellucid::samples\n"), 0u);
+  EXPECT_EQ(twice(card, "namespace pellucid::samples {\nstruct Card;\nstruct Card::Edge {\n};\n}  // namespace pellucid::samples\n"), 0u);
+}
+
 TEST(Planted, AMissingOrEmptyReadmeIsFound) {
   const std::filesystem::path top = std::filesystem::path(PELLUCID_BINARY_DIR) / "test-files" / "planted-readme";
   std::filesystem::remove_all(top);

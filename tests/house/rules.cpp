@@ -146,6 +146,33 @@ Violations againstSharedText(const SourceFile& file) {
   return found;
 }
 
+Violations definedTwice(const std::vector<SourceFile>& files) {
+  static const std::regex opens(R"(^namespace ([\w:]*) ?\{)"), closes(R"(^\}  // namespace)"),
+      defines(R"(^(?:struct|class|enum class|union) (\w+)(?: final)?(?: : [^{]*)? ?\{)");
+  Violations violations;
+  std::map<std::string, std::string> firsts;
+  for (const SourceFile& file : files) {
+    if (!file.path.ends_with(".h")) continue;
+    std::vector<std::string> spaces;
+    int number = 0;
+    for (const std::string& line : linesOf(file.text)) {
+      ++number;
+      std::smatch match;
+      if (std::regex_search(line, match, opens)) {
+        spaces.push_back(match[1].length() ? match[1].str() : "of " + file.path);
+      } else if (std::regex_search(line, closes) && !spaces.empty()) {
+        spaces.pop_back();
+      } else if (std::regex_search(line, match, defines)) {
+        std::string name;
+        for (const std::string& space : spaces) name += space + "::";
+        const auto [first, added] = firsts.emplace(name + match[1].str(), at(file, number));
+        if (!added) violations.push_back(first->second + first->first + " is defined in " + at(file, number) + "too");
+      }
+    }
+  }
+  return violations;
+}
+
 Violations roomsWithoutReadme(const std::string& top) {
   Violations found;
   const auto isEmpty = [](const std::filesystem::path& folder) {

@@ -52,6 +52,11 @@ TEST(House, SharedTextSuitsBothCompilers) {
   EXPECT_TRUE(found.empty()) << told(found);
 }
 
+TEST(House, NamesOfTypesAreTheirOwn) {
+  const Violations found = definedTwice(sourceFiles());
+  EXPECT_TRUE(found.empty()) << told(found);
+}
+
 TEST(House, EveryRoomHasAReadme) {
   const Violations found = roomsWithoutReadme(PELLUCID_SOURCE_DIR);
   EXPECT_TRUE(found.empty()) << told(found);
