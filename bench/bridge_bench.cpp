@@ -313,7 +313,7 @@ const Kind kKinds[] = {
     {"unlit, half, grey, all fixed", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, kFixed | PLD_FIXED_EXPOSURE, 0},
     {"unlit, published", false, PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, 0, kFixed, 0},
     {"unlit, float, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0, kFixed, 0},
-    {"lit, exact, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, kColoured | kLight | kScatter, kFixed, 0},
+    {"lit, exact, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, kColoured | kLight | kScatter, kFixed, 0},
     {"unlit, exact, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, 0, kFixed, 0},
     {"unlit, exact, coloured, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, kColoured | kLight, kFixed, 0},
     {"unlit, exact, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, kFixed, 0}};

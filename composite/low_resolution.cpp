@@ -60,7 +60,9 @@ class Upsampler {
     if (!near_.at(x / view_.factor, y / view_.factor)) return;
     const Upsampled up = around(x, y);
     const shading::LowLayer layer = shading::lowLayerOf(up.sums);
-    if (layer.shows) add(layer, up.sums.nearestZ, x, y);
+    // What only bends or spreads counts too, or nobody would look where to.
+    const bool bends = low_.scatters() && (up.refraction.z > 0.0f || up.refraction.w > 0.0f);
+    if (layer.shows || bends) add(layer, up.sums.nearestZ, x, y);
     if (low_.scatters()) addScatter(up, x, y);
   }
 

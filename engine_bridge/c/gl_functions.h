@@ -73,6 +73,7 @@ namespace pellucid::c {
   X(IsEnabled, PFNGLISENABLEDPROC)                             \
   X(IsEnabledi, PFNGLISENABLEDIPROC)                           \
   X(IsFramebuffer, PFNGLISFRAMEBUFFERPROC)                     \
+  X(IsBuffer, PFNGLISBUFFERPROC)                               \
   X(IsProgram, PFNGLISPROGRAMPROC)                             \
   X(IsTexture, PFNGLISTEXTUREPROC)                             \
   X(LinkProgram, PFNGLLINKPROGRAMPROC)                         \

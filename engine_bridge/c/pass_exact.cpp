@@ -1,4 +1,5 @@
 // The exact tier: a stage's fragments are listed while the host draws, and summed when it ends.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -37,7 +38,9 @@ pld_status pld_pass::checkLists(const pld_create_info& info) {
   gl.GetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &blocks);
   if (blocks < listBlocks() || bindings < listBlocks())
     return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d storage blocks for fragments, expected %d", blocks, listBlocks());
-  const int written = listBlocks() + static_cast<int>(planesOf(permutation_).size());  // by what folds the layers
+  // By what folds a stage; without scattering sums have an output for the nearest depth, plane or none.
+  const std::size_t planes = planesOf(permutation_).size() + (permutation_.lean() || permutation_.scatters() ? 0u : 1u);
+  const int written = listBlocks() + static_cast<int>(permutation_.low() ? std::max(planes, lowPlanes().size()) : planes);
   if (resources < written) return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d blocks and outputs for a shader, expected %d", resources, written);
   if (info.storage_binding > static_cast<uint32_t>(bindings - listBlocks()))
     return fail(PLD_ERROR_ARGUMENT, "pld_create: storage_binding: found %u, expected at most %d", info.storage_binding, bindings - listBlocks());
@@ -106,7 +109,7 @@ pld_status pld_pass::foldLists() {
   const bool low = stage_ == PLD_STAGE_LOW;
   setPlainDrawing(gl, frame_.width / (low ? frame_.low_factor : 1), frame_.height / (low ? frame_.low_factor : 1));
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frameOf(stage_));
-  bindLists();  // what the host has put at the target is read here
+  bindLists();  // the host may have put others there meanwhile
   gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   const Program& fold = folds_[stage_];
   useProgram(fold);

@@ -55,6 +55,8 @@ pld_status pld_pass::checkNumbers(const char* call, const pld_frame& frame, uint
   if ((units && !isPositive(frame.metres_per_unit)) || (has(PLD_FIXED_EXPOSURE) && !isPositive(frame.pre_exposure)))
     return fail(PLD_ERROR_ARGUMENT, "%s: metres_per_unit %g, pre_exposure %g: expected both > 0", call,
                 static_cast<double>(frame.metres_per_unit), static_cast<double>(frame.pre_exposure));
+  if (has(PLD_FIXED_LENS) && !(isPositive(focalOf(frame, 1).x) && isPositive(focalOf(frame, 1).y)))
+    return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: a focal length that is not finite in pixels", call);
   if (has(PLD_FIXED_WEIGHT) && (!isPositive(frame.weight_near) || !(frame.weight_far > frame.weight_near) ||
                                 !std::isfinite(frame.weight_far) || !std::isfinite(frame.weight_exponent)))
     return fail(PLD_ERROR_ARGUMENT, "%s: weight range %g to %g, exponent %g: expected 0 < near < far and a number", call,
@@ -86,7 +88,7 @@ const char* pld_pass::changedField(const pld_frame& frame) const {
   if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k0 != fixed.diffusion_k0) return "diffusion_k0";
   if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k1 != fixed.diffusion_k1) return "diffusion_k1";
   if (has(PLD_FIXED_PROJECTION) && isOrthographic(frame.projection) != isOrthographic(fixed.projection)) return "projection";
-  if (has(PLD_FIXED_LENS) && (focalOf(frame, 1).x != focalOf(fixed, 1).x || focalOf(frame, 1).y != focalOf(fixed, 1).y)) return "projection";
+  if (has(PLD_FIXED_LENS) && (focalOf(frame, 1).x != focalOf(fixed, 1).x || focalOf(frame, 1).y != focalOf(fixed, 1).y)) return "projection or size";
   return nullptr;
 }
 

@@ -1,17 +1,17 @@
 #include "engine_bridge/c/permutation.h"
 
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace pellucid::c {
 namespace {
 
-// Nine digits give back the same float. In brackets: it may be negative.
+// Nine digits give back the same float, with a point in every locale. In brackets: it may be negative.
 std::string literal(const char* name, float x) {
-  char text[100];
-  std::snprintf(text, sizeof(text), "%s (%.8ef)", name, static_cast<double>(x));
-  return text;
+  char digits[40];
+  const char* end = std::to_chars(digits, digits + sizeof(digits), x, std::chars_format::scientific, 8).ptr;
+  return std::string(name) + " (" + std::string(digits, static_cast<std::size_t>(end - digits)) + "f)";
 }
 
 void defineFixed(const Permutation& p, pld_stage stage, std::vector<std::string>& defines) {

@@ -73,7 +73,7 @@ struct PlaneSpec {
 std::vector<PlaneSpec> planesOf(const Permutation& permutation);
 PlaneSpec nearestPlane();  // of low-resolution layers besides
 
-// Of shaders/gl/sums_output.glsl and resolve_here.glsl: what lies where. Without SCATTER, which stages and views choose.
+// Of shaders/gl/sums_output.glsl, lean_output.glsl and resolve_here.glsl: what lies where. Without SCATTER, which stages and views choose.
 std::vector<std::string> scatterPlaces(const Permutation& permutation);
 // Defines of shaders/gl/seam.glsl for a stage; of empty_planes.frag; of planar_depth.frag; of resolve_here.glsl.
 std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);

@@ -5,7 +5,8 @@
 namespace pellucid::c {
 namespace {
 
-constexpr GLenum kAlphaTest = 0x0BC0;  // compatibility contexts only
+// Compatibility contexts only.
+constexpr GLenum kAlphaTest = 0x0BC0, kPolygonStipple = 0x0B42;
 // Switches, in the order of SavedState::enabled_.
 constexpr GLenum kSwitches[] = {
     GL_DEPTH_TEST,      GL_STENCIL_TEST,    GL_COLOR_LOGIC_OP,  GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE,
@@ -45,6 +46,11 @@ GLint get(const GlFunctions& gl, GLenum what, int index) {
   return value;
 }
 
+GLuint livingBuffer(const GlFunctions& gl, GLint saved) {
+  const auto name = static_cast<GLuint>(saved);
+  return name && gl.IsBuffer(name) ? name : 0;
+}
+
 }  // namespace
 
 SavedState::Bound SavedState::boundAt(const GlFunctions& gl, GLenum target, GLenum start, GLenum size, GLuint index) {
@@ -56,7 +62,7 @@ SavedState::Bound SavedState::boundAt(const GlFunctions& gl, GLenum target, GLen
 }
 
 void SavedState::bindAgain(const GlFunctions& gl, GLenum target, GLuint index, const Bound& bound) {
-  const auto name = static_cast<GLuint>(bound.buffer);
+  const GLuint name = livingBuffer(gl, bound.buffer);
   if (name && bound.size > 0)
     gl.BindBufferRange(target, index, name, static_cast<GLintptr>(bound.start), static_cast<GLsizeiptr>(bound.size));
   else
@@ -96,6 +102,7 @@ void SavedState::save(const GlFunctions& gl, Units units, int uniformBinding, St
   gl.GetIntegerv(GL_POLYGON_MODE, polygonMode_);
   for (std::size_t i = 0; i < std::size(kSwitches); ++i) enabled_[i] = gl.IsEnabled(kSwitches[i]);
   if (!gl.core) enabled_[std::size(kSwitches)] = gl.IsEnabled(kAlphaTest);
+  if (!gl.core) enabled_[std::size(kSwitches) + 1] = gl.IsEnabled(kPolygonStipple);
   for (int i = 0; i < units.count; ++i) {
     gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units.first + i));
     textures_[i] = get(gl, GL_TEXTURE_BINDING_2D);
@@ -135,10 +142,10 @@ void SavedState::restore(const GlFunctions& gl) const {
   restoreActiveUnit(gl);
   restoreObjects(gl);
   if (uniformBinding_ >= 0) bindAgain(gl, GL_UNIFORM_BUFFER, name(uniformBinding_), uniforms_);
-  gl.BindBuffer(GL_UNIFORM_BUFFER, name(uniformBuffer_));
+  gl.BindBuffer(GL_UNIFORM_BUFFER, livingBuffer(gl, uniformBuffer_));
   if (storage_.first < 0) return;
   for (int i = 0; i < storage_.count; ++i) bindAgain(gl, GL_SHADER_STORAGE_BUFFER, name(storage_.first + i), listed_[i]);
-  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, name(storageBuffer_));
+  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, livingBuffer(gl, storageBuffer_));
 }
 
 void SavedState::restoreUnit(const GlFunctions& gl, int i) const {
@@ -174,6 +181,7 @@ void SavedState::restoreShape(const GlFunctions& gl) const {
   }
   for (std::size_t i = kAccumulationSwitches; i < std::size(kSwitches); ++i)
     choose(gl, kSwitches[i], enabled_[i] != GL_FALSE);
+  if (!gl.core) choose(gl, kPolygonStipple, enabled_[std::size(kSwitches) + 1] != GL_FALSE);
 }
 
 void setViewportTo(const GlFunctions& gl, int x, int y, int width, int height) {
@@ -197,6 +205,7 @@ void setAccumulation(const GlFunctions& gl, int width, int height) {
 void setPlainDrawing(const GlFunctions& gl, int width, int height) {
   setAccumulation(gl, width, height);
   for (const GLenum what : kSwitches) gl.Disable(what);
+  if (!gl.core) gl.Disable(kPolygonStipple);
   gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 

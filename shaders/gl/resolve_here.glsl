@@ -1,7 +1,8 @@
 #pragma once
 // Sums to what transparency does to a pixel: fetch and resolve through the shared model. Defines say how the sums lie:
 // GREY, LEAN, PUBLISHED, FRONT_TAIL, else one plane per sum; and which planes there are: NO_LIGHT, SCATTER, DISPERSION.
-// NEAREST_SAMPLERS: textures are looked up at their nearest texels.
+// NEAREST_SAMPLERS: textures are looked up at their nearest texels. LOW_OVER: of gl/front_sums.glsl; DIFFUSE_IN_ALPHA, NO_DIFFUSE: of
+// gl/sums_output.glsl.
 #include "gl/lookup.glsl"
 #include "shared/lean.glsl"
 #include "shared/picture.glsl"

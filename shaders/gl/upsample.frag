@@ -110,7 +110,6 @@ void main() {
 #endif
   if (!layer.shows && !bends) discard;
   OitSums added = lowLayerSums(layer, NORMALISATION);
-  if (!layer.shows) added.count = 0.0f;
   writeOitSums(added, sums.nearestZ);
 #ifdef FRONT_TAIL
   // Before the nearest layer it lies over that; else it is one of the others.

@@ -22,7 +22,9 @@ void main() {
     OitSums sums = sumsAt(pixel);
     vec3 left = resolveSums(sums, false).transparent;
     sums.numerator += rims.averaged;
+#ifndef NO_LIGHT
     sums.light += rims.added;
+#endif
     picture.rgb = max(resolveSums(sums, false).transparent - left, vec3(0.0f));
   }
 }

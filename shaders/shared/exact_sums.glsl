@@ -1,7 +1,7 @@
 #pragma once
 // Sums of floats that no order changes, rounded once. Each term is cut at two grids that the largest term and the number
 // of terms decide, so that every addition of the parts is exact (Demmel and Nguyen, Parallel Reproducible Summation, 2015).
-// What lies below the second grid is lost: 2^-104 of the largest term, times the square of the number of terms, a term.
+// What lies below the second grid is lost: 2^-101 of the largest term, times the square of the number of terms, a term.
 // The one shared text in doubles: rounding is all it is about.
 
 // Four sums.

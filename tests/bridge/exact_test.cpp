@@ -31,6 +31,10 @@ const Case kCases[] = {
     {"grey, light", false, true, false, false, false, false, PLD_WEIGHT_BY_POWER, 2},
     {"grey, refraction, diffusion", false, true, true, true, false, false, PLD_WEIGHT_BY_EQ10Z, 2},
     {"grey, refraction", false, true, true, false, false, false, PLD_WEIGHT_BY_NONE, 2},
+    {"grey, refraction, diffusion, no light", false, false, true, true, false, false, PLD_WEIGHT_BY_EQ5, 2},
+    {"grey, refraction, no light", false, false, true, false, false, false, PLD_WEIGHT_BY_EQ9Z, 2},
+    {"coloured, refraction, diffusion, no light", true, false, true, true, false, false, PLD_WEIGHT_BY_EQ5, 2},
+    {"all but light", true, false, true, true, true, true, PLD_WEIGHT_BY_POWER, 20},
     {"coloured", true, false, false, false, false, false, PLD_WEIGHT_BY_POWER, 2},
     {"coloured, refraction", true, true, true, false, false, false, PLD_WEIGHT_BY_EQ8Z, 2},
     {"coloured, diffusion", true, true, false, true, false, false, PLD_WEIGHT_BY_EQ9, 2},
@@ -142,7 +146,7 @@ Planes planesOf(pld_pass* pass) {
 // As the permutation lays sums out, in the words of the shared text. Components that a plane lacks read as 0, 0, 0, 1.
 Planes planesOf(const OitPlanes& sums, const Case& one) {
   Planes planes(8);
-  const bool lean = !one.light && !one.refracts && !one.diffuses, scatters = one.refracts || one.diffuses;
+  const bool lean = !one.light, scatters = one.refracts || one.diffuses;
   const auto put = [&](std::size_t plane, glm::vec4 value) {
     for (int c = 0; c < 4; ++c) planes[plane].push_back(value[c]);
   };
@@ -153,9 +157,16 @@ Planes planesOf(const OitPlanes& sums, const Case& one) {
       const float diffuseZ = scatters && sums.scatters() ? sums.diffuseZ.at(x, y) : kFar;
       if (lean) {
         const glm::vec4 radiance(unpacked.numerator, one.coloured ? unpacked.count : unpacked.denominator.r);
+        const float refractionZ = scatters ? targets.light.a : 0.0f, nearest = one.diffuses ? diffuseZ : 0.0f;
         put(0, radiance);
-        put(1, one.coloured ? glm::vec4(unpacked.denominator, 0) : glm::vec4(unpacked.depth.r, unpacked.count, 0, 1));
-        if (one.coloured) put(2, glm::vec4(unpacked.depth, 0));
+        if (one.coloured) {
+          put(1, glm::vec4(unpacked.denominator, refractionZ));
+          put(2, glm::vec4(unpacked.depth, nearest));
+        } else {
+          put(1, glm::vec4(unpacked.depth.r, unpacked.count, refractionZ, scatters ? nearest : 1.0f));
+        }
+        if (scatters) put(6, sums.refraction.at(x, y));
+        if (one.disperses) put(7, sums.dispersion.at(x, y));
         continue;
       }
       put(4, targets.light);

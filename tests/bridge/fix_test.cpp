@@ -1,6 +1,7 @@
 // What a host fixes for all frames: constants in the seam's text give the bits that the block gives, and frames keep to them.
 #include <gtest/gtest.h>
 
+#include <clocale>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -187,6 +188,26 @@ TEST(BridgeFix, FramesKeepToWhatIsFixed) {
   begins([](auto& f) { f.diffusion_k1 = 0.1f; }, PLD_ERROR_ARGUMENT, "diffusion_k1");
   begins([](auto& f) { f.projection[11] = 0, f.projection[15] = 1; }, PLD_ERROR_ARGUMENT, "projection");
   begins([](auto& f) { f.projection[0] *= 2, f.pre_exposure = 3; }, PLD_OK, "");
+  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+}
+
+// A host may speak a language that writes commas; GLSL does not.
+TEST(BridgeFix, ConstantsAreWrittenAlikeInEveryLocale) {
+  GlContext context;
+  const char* there = nullptr;
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "nl_NL.UTF-8"})
+    if (!there) there = std::setlocale(LC_ALL, name);
+  std::printf("locale: %s\n", there ? there : "only C is installed");
+  Host host(32, 24);
+  pld_pass* pass = host.create(host.info());
+  ASSERT_NE(pass, nullptr);
+  const pld_frame frame = host.frame();
+  EXPECT_EQ(pld_fix(pass, &frame, PLD_FIXED_EXPOSURE), PLD_OK);
+  const char* seam = nullptr;
+  EXPECT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, 450, &seam), PLD_OK);
+  std::setlocale(LC_ALL, "C");
+  ASSERT_NE(seam, nullptr);
+  EXPECT_NE(std::string(seam).find("EXPOSURE (1.00000000e+00f)"), std::string::npos);
   EXPECT_EQ(pld_destroy(&pass), PLD_OK);
 }
 

@@ -202,13 +202,19 @@ void main() {
   glCreateVertexArrays(1, &array);
   for (const uint32_t features : {uint32_t{PLD_FEATURE_REFRACTION}, uint32_t{PLD_FEATURE_DIFFUSION},
                                   uint32_t{PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION | PLD_FEATURE_DISPERSION | PLD_FEATURE_DIFFUSION}})
-    for (const bool half : {false, true}) {
+    // The last turn has the lens fixed, which is another one at low resolution.
+    for (const int turn : {0, 1, 2}) {
+      const bool half = turn == 1, fixes = turn == 2;
       pld_create_info info = host.info();
       info.features = features | PLD_FEATURE_LOW_RESOLUTION;
       info.tier = half ? PLD_TIER_HALF : PLD_TIER_FLOAT;
       pld_pass* pass = host.create(info);
       ASSERT_NE(pass, nullptr);
       const pld_stage stages[] = {PLD_STAGE_LAYERS, PLD_STAGE_LOW};
+      const pld_frame perspective = host.frame();
+      if (fixes) {
+        ASSERT_EQ(pld_fix(pass, &perspective, PLD_FIXED_LENS), PLD_OK) << pld_message(pass);
+      }
       GLuint programs[2] = {};
       for (int i = 0; i < 2; ++i) {
         const char* seam = nullptr;
@@ -217,6 +223,7 @@ void main() {
         ASSERT_EQ(pld_connect(pass, programs[i]), PLD_OK);
       }
       for (const bool orthographic : {false, true}) {
+        if (orthographic && fixes) continue;
         pld_frame frame = host.frame();
         frame.refract = PLD_REFRACT_AT_DISTANCE;
         frame.diffusion_k0 = .2f;

@@ -69,7 +69,7 @@ typedef void (*pld_log)(void* user, pld_log_level level, const char* text);
 typedef PLD_ENUM(pld_method) {
   PLD_METHOD_PHENOMENOLOGICAL = 0, /* weighted sums, refraction and diffusion where the features ask */
   PLD_METHOD_WEIGHTED = 1,         /* the same sums; refuses the scattering features */
-  PLD_METHOD_FRONT_TAIL = 2        /* the nearest layer exactly over weighted sums; geometry is drawn twice */
+  PLD_METHOD_FRONT_TAIL = 2        /* the nearest layer exactly over weighted sums; geometry is drawn twice, in the exact tier once */
 } pld_method;
 
 typedef PLD_ENUM(pld_tier) {
@@ -151,10 +151,11 @@ typedef struct pld_create_info {
   uint32_t texture_unit;    /* the seam reads this unit and the two after it, while stages are drawn; three after it
                                with PLD_FEATURE_RIMS in the published tier or with PLD_METHOD_FRONT_TAIL */
   float fragments_per_pixel; /* PLD_TIER_EXACT: room for this many on the average of pld_resize()'s picture, in each stage; > 0, at most
-                                65536. 36 bytes each, 52 with refraction, diffusion or rims, 68 with dispersion. Where more come,
+                                65536. 36 bytes each, 52 with refraction, diffusion or (not under
+                                PLD_METHOD_FRONT_TAIL) rims, 68 with dispersion. Where more come,
                                 pld_end() returns PLD_ERROR_MEMORY */
   uint32_t storage_binding;  /* PLD_TIER_EXACT: the first of three shader storage bindings, four with refraction, diffusion or
-                                rims, five with dispersion, that the seam writes to while stages are drawn */
+                                (not under PLD_METHOD_FRONT_TAIL) rims, five with dispersion, that the seam writes to while stages are drawn */
 } pld_create_info;
 
 typedef PLD_ENUM(pld_refract) {
@@ -216,7 +217,7 @@ typedef PLD_ENUM(pld_view) {
   PLD_VIEW_MEAN_COLOUR = 2,  /* the layers' weighted mean */
   PLD_VIEW_TRANSMISSION = 3, /* beta */
   PLD_VIEW_WEIGHT = 4,       /* mean weight of the occluders, per channel, over 1 + itself; without
-                                PLD_FEATURE_LIGHT the sum of weight times opacity, over 1 + itself */
+                                PLD_FEATURE_LIGHT and _LOW_RESOLUTION the sum of weight times opacity, over 1 + itself */
   PLD_VIEW_LIGHT = 5,        /* light that adds */
   PLD_VIEW_OFFSET = 6,       /* red, green: 0.5 + offset / 128 px; blue: 1 where anything refracts */
   PLD_VIEW_SPREAD = 7,       /* D / 64 px */
