@@ -375,5 +375,36 @@ TEST(BridgeState, AHostThatRestoresGetsTheSamePicture) {
   EXPECT_GT(maps[0][0], 0.0f);
 }
 
+// As it is with textures: nothing is bound where what was bound is no more.
+TEST(BridgeState, BuffersThatTheHostDeletesMeanwhileAreNotBoundAgain) {
+  GlContext context;
+  Host host(8, 8);
+  pld_create_info info = host.info();
+  info.tier = PLD_TIER_EXACT;
+  info.fragments_per_pixel = 1.0f;
+  info.storage_binding = 2;
+  pld_pass* pass = host.create(info);
+  ASSERT_NE(pass, nullptr);
+  GLuint buffers[2] = {};
+  glGenBuffers(2, buffers);
+  const std::pair<GLenum, GLuint> places[] = {{GL_SHADER_STORAGE_BUFFER, info.storage_binding}, {GL_UNIFORM_BUFFER, info.uniform_binding}};
+  for (int i = 0; i < 2; ++i) {
+    glBindBuffer(places[i].first, buffers[i]);
+    glBufferData(places[i].first, 256, nullptr, GL_STATIC_DRAW);
+    glBindBufferBase(places[i].first, places[i].second, buffers[i]);
+  }
+  const pld_frame frame = host.frame();
+  ASSERT_EQ(pld_begin(pass, PLD_STAGE_LAYERS, &frame), PLD_OK);
+  glDeleteBuffers(2, buffers);
+  EXPECT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  GLint bound = -1;
+  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, info.storage_binding, &bound);
+  EXPECT_EQ(bound, 0);
+  glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, info.uniform_binding, &bound);
+  EXPECT_EQ(bound, 0);
+  EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+}
+
 }  // namespace
 }  // namespace pellucid::test
