@@ -1,10 +1,10 @@
-// What the engine bridge costs beside one alpha-blended pass with the same geometry and the same shading. Ratios of medians,
-// taken in turns, so that a busy machine slows both.
+// What the engine bridge costs beside one alpha-blended pass with the same geometry and the same shading. Ratios of
+// medians, taken in turns, so that a busy machine slows both.
 //
 //   bench_bridge [--processor-time] [flags of Google Benchmark]
 //
-// --processor-time measures what a CPU rasteriser takes of the processor, not what passes on the clock: for busy machines,
-// with LP_NUM_THREADS=0 in the environment, so that no rasteriser thread waits for another.
+// --processor-time measures what a CPU rasteriser takes of the processor, not what passes on the clock: for busy
+// machines, with LP_NUM_THREADS=0 in the environment, so that no rasteriser thread waits for another.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -124,8 +124,8 @@ class Frame {
   }
 
   GLuint shader(const char* seam, bool lit) {
-    std::string text = std::string("#version 450 core\n") + (lit ? "#define LIT\n" : "") + (seam ? seam : "") + kShading +
-                       (seam ? kSeamMain : kBlendMain);
+    std::string text = std::string("#version 450 core\n") + (lit ? "#define LIT\n" : "") + (seam ? seam : "") +
+                       kShading + (seam ? kSeamMain : kBlendMain);
     const GLuint name = makeProgram(kVertex, text);
     if (!name) std::exit(1);
     glProgramUniformMatrix4fv(name, glGetUniformLocation(name, "clipFromView"), 1, GL_FALSE, frame().projection);
@@ -276,9 +276,10 @@ void measure(benchmark::State& state, const Kind& kind) {
   need(pld_query(pass, PLD_VALUE_GEOMETRY_PASSES, &passes), pass);
   need(pld_query(pass, PLD_VALUE_BYTES, &bytes), pass);
   const double ratio = median(ours) / median(theirs);
-  std::printf("| %s | %llu | %llu | %.0f | %llu | %.2f | %.2f |%s  %.1f / %.1f ms\n", kind.what, static_cast<unsigned long long>(planes),
-              static_cast<unsigned long long>(bits), static_cast<double>(bytes) * 8 / (kWidth * kHeight),
-              static_cast<unsigned long long>(passes), ratio, median(resolve) / median(theirs),
+  std::printf("| %s | %llu | %llu | %.0f | %llu | %.2f | %.2f |%s  %.1f / %.1f ms\n", kind.what,
+              static_cast<unsigned long long>(planes), static_cast<unsigned long long>(bits),
+              static_cast<double>(bytes) * 8 / (kWidth * kHeight), static_cast<unsigned long long>(passes), ratio,
+              median(resolve) / median(theirs),
               kind.aim > 0 ? (ratio <= kind.aim ? "  holds" : "  MISSES its aim") : "", median(ours), median(theirs));
   std::fflush(stdout);
   pld_destroy(&pass);
@@ -287,23 +288,38 @@ void measure(benchmark::State& state, const Kind& kind) {
 constexpr uint32_t kColoured = PLD_FEATURE_COLOURED, kLight = PLD_FEATURE_LIGHT,
                    kScatter = PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION, kSolids = PLD_FEATURE_SOLIDS;
 // All but the exposure, which engines adapt.
-constexpr uint32_t kFixed = PLD_FIXED_UNITS | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION | PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
+constexpr uint32_t kFixed = PLD_FIXED_UNITS | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION | PLD_FIXED_DIFFUSION |
+                            PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
 const Kind kKinds[] = {
     {"lit, float, full model", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter, kFixed, 1.3},
-    {"lit, float, full model, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter, kFixed | PLD_FIXED_EXPOSURE, 1.3},
-    {"lit, float, full model, nothing fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter, 0, 0},
-    {"lit, float, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kLight, kFixed, 1.3},
-    {"lit, float, full model, light that adds, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kLight, kFixed | PLD_FIXED_EXPOSURE, 1.3},
-    {"lit, float, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kSolids, kFixed, 0},
-    {"lit, float, full model, light that adds, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter | kLight | kSolids, kFixed, 0},
-    {"lit, half, full model, light that adds, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kScatter | kLight | kSolids, kFixed, 0},
-    {"lit, half, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | kScatter, kFixed, 0},
-    {"lit, half, refraction, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
-    {"lit, float, grey, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kLight | kScatter, kFixed, 0},
-    {"lit, published, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, kScatter | kSolids, kFixed, 0},
-    {"lit, float, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | PLD_FEATURE_REFRACTION, kFixed, 0},
-    {"lit, float, diffusion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | PLD_FEATURE_DIFFUSION, kFixed, 0},
-    {"lit, float, coloured, light, solids", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight | kSolids, kFixed, 0},
+    {"lit, float, full model, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter,
+     kFixed | PLD_FIXED_EXPOSURE, 1.3},
+    {"lit, float, full model, nothing fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | kScatter,
+     0, 0},
+    {"lit, float, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kColoured | kScatter | kLight, kFixed, 1.3},
+    {"lit, float, full model, light that adds, all fixed", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kColoured | kScatter | kLight, kFixed | PLD_FIXED_EXPOSURE, 1.3},
+    {"lit, float, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kColoured | kScatter | kSolids, kFixed, 0},
+    {"lit, float, full model, light that adds, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kColoured | kScatter | kLight | kSolids, kFixed, 0},
+    {"lit, half, full model, light that adds, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF,
+     kColoured | kScatter | kLight | kSolids, kFixed, 0},
+    {"lit, half, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF,
+     kColoured | kLight | kScatter, kFixed, 0},
+    {"lit, half, refraction, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF,
+     kColoured | kLight | PLD_FEATURE_REFRACTION, kFixed, 0},
+    {"lit, float, grey, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kLight | kScatter, kFixed, 0},
+    {"lit, published, full model, solids", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, kScatter | kSolids,
+     kFixed, 0},
+    {"lit, float, refraction", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | PLD_FEATURE_REFRACTION,
+     kFixed, 0},
+    {"lit, float, diffusion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kColoured | PLD_FEATURE_DIFFUSION,
+     kFixed, 0},
+    {"lit, float, coloured, light, solids", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight | kSolids,
+     kFixed, 0},
     {"lit, float, coloured, light", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, kFixed, 1.3},
     {"unlit, float, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0, kFixed, 3},
     {"unlit, float, grey, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kLight, kFixed, 3},
@@ -313,7 +329,8 @@ const Kind kKinds[] = {
     {"unlit, half, grey, all fixed", false, PLD_METHOD_WEIGHTED, PLD_TIER_HALF, 0, kFixed | PLD_FIXED_EXPOSURE, 0},
     {"unlit, published", false, PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, 0, kFixed, 0},
     {"unlit, float, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0, kFixed, 0},
-    {"lit, exact, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, kColoured | kLight | kScatter, kFixed, 0},
+    {"lit, exact, full model, light that adds", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT,
+     kColoured | kLight | kScatter, kFixed, 0},
     {"unlit, exact, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, 0, kFixed, 0},
     {"unlit, exact, coloured, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, kColoured | kLight, kFixed, 0},
     {"unlit, exact, front+tail, grey", false, PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, kFixed, 0}};
@@ -326,8 +343,10 @@ int main(int count, char** arguments) {
   for (int i = 1; i < count; ++i)
     if (std::strcmp(arguments[i], "--processor-time") == 0) processorTime = true;
   benchmark::Initialize(&count, arguments);
-  std::printf("%dx%d, %d layers; medians over a blended RGBA16F pass with the same shading\n", kWidth, kHeight, kLayers);
-  std::printf("| what | planes | bits a pixel | bits with everything | geometry passes | begin, draws, end | resolve |\n");
+  std::printf("%dx%d, %d layers; medians over a blended RGBA16F pass with the same shading\n", kWidth, kHeight,
+              kLayers);
+  std::printf(
+      "| what | planes | bits a pixel | bits with everything | geometry passes | begin, draws, end | resolve |\n");
   std::printf("| --- | --- | --- | --- | --- | --- | --- |\n");
   for (const Kind& kind : kKinds)
     benchmark::RegisterBenchmark(kind.what, [&kind](benchmark::State& state) { measure(state, kind); })

@@ -1,5 +1,5 @@
-// What the parts of the engine bridge cost beside its layers: low resolution, rims, shadow maps. Ratios of medians, taken in
-// turns, so that a busy machine slows all of them.
+// What the parts of the engine bridge cost beside its layers: low resolution, rims, shadow maps. Ratios of medians,
+// taken in turns, so that a busy machine slows all of them.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -89,7 +89,8 @@ void main() {
   float density = smokeHere();
   pldWriteFragment(pldSurface(vec3(0.5 * density), density, vec3(0.0), vec3(0.0, 0.0, -3.0 - seed)));
 }
-)" : R"(
+)"
+                                       : R"(
 void main() {
   float density = smokeHere();
   pldWriteRim(pldSurface(vec3(0.5 * density), density, vec3(0.0), vec3(0.0, 0.0, -3.0 - seed)), vec3(0.3 * density), pldCoverageGradient(density));
@@ -99,7 +100,8 @@ void main() {
   const auto layerOf = [&](pld_stage stage) { return layerFor(pass, stage); };
   const char* caster = nullptr;
   need(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_CASTER, 450, &caster), pass);
-  const GLuint layers = layerOf(PLD_STAGE_LAYERS), rims = layerOf(PLD_STAGE_RIMS), low = layerOf(PLD_STAGE_LOW), casters = programOf(caster, R"(
+  const GLuint layers = layerOf(PLD_STAGE_LAYERS), rims = layerOf(PLD_STAGE_RIMS), low = layerOf(PLD_STAGE_LOW),
+               casters = programOf(caster, R"(
 void main() {
   float density = smokeHere();
   PldCaster one = PldCaster(density, vec3(0.2, 0.4, 0.6), vec3(0.0, 0.0, -1.0 - 0.2 * seed), vec3(0.0, 0.0, 1.0), 1.0, pldCasterIdentity(uint(seed), 0u));
@@ -130,7 +132,8 @@ void main() {
   const auto stage = [&](pld_stage which, GLuint program, int count, int factor) {
     frame.low_factor = factor;
     need(pld_begin(pass, which, &frame), pass);
-    draw(program, count, which == PLD_STAGE_LOW ? kWidth / factor : kWidth, which == PLD_STAGE_LOW ? kHeight / factor : kHeight);
+    draw(program, count, which == PLD_STAGE_LOW ? kWidth / factor : kWidth,
+         which == PLD_STAGE_LOW ? kHeight / factor : kHeight);
     need(pld_end(pass), pass);
   };
   pld_shadow_view view{};
@@ -151,24 +154,30 @@ void main() {
   };
   const auto whole = [&] { stage(PLD_STAGE_LAYERS, layers, 0, 2), stage(PLD_STAGE_RIMS, rims, 0, 2); };
   const auto filled = [&] { stage(PLD_STAGE_LAYERS, layers, 1, 2); };
-  std::vector<Part> parts{{"8 layers of smoke at full resolution", [] {}, [&] { stage(PLD_STAGE_LAYERS, layers, kLayers, 2); }, {}},
-                          {"the same at 1/2, upsampled", whole, [&] { stage(PLD_STAGE_LOW, low, kLayers, 2); }, {}},
-                          {"the same at 1/4", whole, [&] { stage(PLD_STAGE_LOW, low, kLayers, 4); }, {}},
-                          {"the same at 1/8", whole, [&] { stage(PLD_STAGE_LOW, low, kLayers, 8); }, {}},
-                          {"upsampling nothing", whole, [&] { stage(PLD_STAGE_LOW, low, 0, 4); }, {}},
-                          {"rims on every pixel, one layer of them, darkened", filled, [&] { stage(PLD_STAGE_RIMS, rims, 1, 2); }, {}},
-                          {"a layer under front+tail, without rims", [&] { fronted(false, true); }, [&] { fronted(false, false); }, {}},
-                          {"the same, rims on every pixel, which its seam darkens", [&] { fronted(true, true); }, [&] { fronted(true, false); }, {}},
-                          {"no rims", filled, [&] { stage(PLD_STAGE_RIMS, rims, 0, 2); }, {}},
-                          {"a coloured shadow map of 512 x 512, 8 casters that fill it", [] {}, [&] { face(kLayers); }, {}},
-                          {"the same map, nothing drawn: its filter", [] {}, [&] { face(0); }, {}}};
+  std::vector<Part> parts{
+      {"8 layers of smoke at full resolution", [] {}, [&] { stage(PLD_STAGE_LAYERS, layers, kLayers, 2); }, {}},
+      {"the same at 1/2, upsampled", whole, [&] { stage(PLD_STAGE_LOW, low, kLayers, 2); }, {}},
+      {"the same at 1/4", whole, [&] { stage(PLD_STAGE_LOW, low, kLayers, 4); }, {}},
+      {"the same at 1/8", whole, [&] { stage(PLD_STAGE_LOW, low, kLayers, 8); }, {}},
+      {"upsampling nothing", whole, [&] { stage(PLD_STAGE_LOW, low, 0, 4); }, {}},
+      {"rims on every pixel, one layer of them, darkened", filled, [&] { stage(PLD_STAGE_RIMS, rims, 1, 2); }, {}},
+      {"a layer under front+tail, without rims", [&] { fronted(false, true); }, [&] { fronted(false, false); }, {}},
+      {"the same, rims on every pixel, which its seam darkens",
+       [&] { fronted(true, true); },
+       [&] { fronted(true, false); },
+       {}},
+      {"no rims", filled, [&] { stage(PLD_STAGE_RIMS, rims, 0, 2); }, {}},
+      {"a coloured shadow map of 512 x 512, 8 casters that fill it", [] {}, [&] { face(kLayers); }, {}},
+      {"the same map, nothing drawn: its filter", [] {}, [&] { face(0); }, {}}};
   for (int turn = 0; turn < kTurns; ++turn)
     for (Part& part : parts) {
       part.before();
       part.times.push_back(milliseconds(part.timed));
     }
-  std::printf("%dx%d, medians of %d\n| what | ms | over 8 full layers |\n| --- | --- | --- |\n", kWidth, kHeight, kTurns);
-  for (const Part& part : parts) std::printf("| %s | %.1f | %.2f |\n", part.what, median(part.times), median(part.times) / median(parts[0].times));
+  std::printf("%dx%d, medians of %d\n| what | ms | over 8 full layers |\n| --- | --- | --- |\n", kWidth, kHeight,
+              kTurns);
+  for (const Part& part : parts)
+    std::printf("| %s | %.1f | %.2f |\n", part.what, median(part.times), median(part.times) / median(parts[0].times));
   for (pld_pass** one : {&pass, &dark, &plain}) pld_destroy(one);
 }
 

@@ -1,14 +1,14 @@
-// measure_deep_file OUT.exr WIDTH HEIGHT SAMPLES SEED: a deep scanline EXR as renderers write them, half R G B A and float
-// Z, ZIPS, with SAMPLES thin samples in every pixel, in no order of depth. What flatten_table.sh times.
+// measure_deep_file OUT.exr WIDTH HEIGHT SAMPLES SEED: a deep scanline EXR as renderers write them, half R G B A and
+// float Z, ZIPS, with SAMPLES thin samples in every pixel, in no order of depth. What flatten_table.sh times.
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
 #include <ImfHeader.h>
 
+#include <half.h>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <half.h>
 #include <stdexcept>
 #include <string>
 #include <vector>

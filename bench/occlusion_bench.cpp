@@ -1,5 +1,5 @@
-// What inferred occlusion costs of `composite`, as a user runs it: the sample foliage at 1080 and 2160 lines, and bottles,
-// which has no leaf. Prints times and shares; --lines N measures that size alone.
+// What inferred occlusion costs of `composite`, as a user runs it: the sample foliage at 1080 and 2160 lines, and
+// bottles, which has no leaf. Prints times and shares; --lines N measures that size alone.
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -44,9 +44,10 @@ void measure(const std::string& sample, int lines) {
   const Timing off = composite(stem, "off"), on = composite(stem, "inferred");
   const double passes = on.of("transparent pass") - off.of("transparent pass");
   const double planes = on.of("depth of leaves") + on.of("occlusion of leaves");
-  std::printf("%-8s %4d lines: composite %6.2f s without, %6.2f s with inferred occlusion; of the latter %4.1f%% for the "
-              "occluders (once), %4.1f%% more in the passes (8 samples)\n",
-              sample.c_str(), lines, off.total, on.total, 100.0 * planes / on.total, 100.0 * passes / on.total);
+  std::printf(
+      "%-8s %4d lines: composite %6.2f s without, %6.2f s with inferred occlusion; of the latter %4.1f%% for the "
+      "occluders (once), %4.1f%% more in the passes (8 samples)\n",
+      sample.c_str(), lines, off.total, on.total, 100.0 * planes / on.total, 100.0 * passes / on.total);
   if (planes == 0.0) {
     for (const auto& reason : on.pruned)
       if (reason.get<std::string>().rfind("inferred occlusion", 0) == 0)

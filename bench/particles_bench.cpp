@@ -23,18 +23,19 @@ test::Ended must(const std::vector<std::string>& arguments, const std::string& p
   std::exit(1);
 }
 
-void measure(const std::string& particles, const std::string& height, const std::string& budget, const std::string& folder) {
+void measure(const std::string& particles, const std::string& height, const std::string& budget,
+             const std::string& folder) {
   must({".", "smokeball", height, "--particles", particles}, "pellucid_samples", folder);
   std::printf("%s particles, %s rows, --budget %s, file %.1f MiB\n", particles.c_str(), height.c_str(), budget.c_str(),
               static_cast<double>(std::filesystem::file_size(folder + "/smokeball.glb")) / 1048576.0);
   for (const std::string method : {"phenomenological", "over"}) {
-    const test::Ended ended = must({"composite", "smokeball.exr", "smokeball.glb", "-o", "out.exr", "--aa", "1", "--budget", budget, "--method",
-                                    method, "--stats", "--json"},
+    const test::Ended ended = must({"composite", "smokeball.exr", "smokeball.glb", "-o", "out.exr", "--aa", "1",
+                                    "--budget", budget, "--method", method, "--stats", "--json"},
                                    "pellucid", folder);
     const nlohmann::json statistics = nlohmann::json::parse(ended.out).at("statistics");
-    std::printf("  %s: %.2f s whole process, peak %.0f MiB, %.1f M fragments, %d chunks\n", method.c_str(), ended.seconds,
-                static_cast<double>(ended.peakBytes) / 1048576.0, 1e-6 * statistics.at("fragments").get<double>(),
-                statistics.at("chunks").get<int>());
+    std::printf("  %s: %.2f s whole process, peak %.0f MiB, %.1f M fragments, %d chunks\n", method.c_str(),
+                ended.seconds, static_cast<double>(ended.peakBytes) / 1048576.0,
+                1e-6 * statistics.at("fragments").get<double>(), statistics.at("chunks").get<int>());
     for (const auto& [name, seconds] : statistics.at("seconds").items())
       std::printf("    %-20s %8.1f ms\n", name.c_str(), 1e3 * seconds.get<double>());
   }

@@ -1,5 +1,6 @@
-// What exactness costs as a user runs it: sixteen panes that each cover 1920 x 1080, through `composite` by the truth, by
-// the weighted sums, and by sums whose weight is fitted to the truth. Medians of the stages between reading and writing.
+// What exactness costs as a user runs it: sixteen panes that each cover 1920 x 1080, through `composite` by the truth,
+// by the weighted sums, and by sums whose weight is fitted to the truth. Medians of the stages between reading and
+// writing.
 //   bench_paths [LAYERS]
 //   bench_paths shots PELLUCID_SAMPLES    each sample at 640 x 360 by the default method and by the truth
 #include <algorithm>
@@ -70,15 +71,16 @@ void panes(int layers) {
     flags.insert(flags.end(), {"--aa", "1"});
     const double seconds = medianSeconds(folder + "/wall.exr", folder + "/panes.glb", flags);
     if (weighted == 0) weighted = seconds;
-    std::printf("%-24s %d layers, 1920 x 1080: %6.2f s, %.2f times weighted\n", name, layers, seconds, seconds / weighted);
+    std::printf("%-24s %d layers, 1920 x 1080: %6.2f s, %.2f times weighted\n", name, layers, seconds,
+                seconds / weighted);
   }
 }
 
 void shots(const std::string& generator) {
   const std::string folder = freshFolder("bench_paths");
   std::vector<double> ratios;
-  for (const char* name : {"ball", "bars", "bottles", "cad", "chess", "clouds", "foliage", "frosted", "mixed", "smoke",
-                           "street"}) {
+  for (const char* name :
+       {"ball", "bars", "bottles", "cad", "chess", "clouds", "foliage", "frosted", "mixed", "smoke", "street"}) {
     if (std::system((generator + " " + folder + " " + name + " > " + folder + "/log").c_str()) != 0)
       throw std::runtime_error(std::string(name) + " could not be made");
     const std::string opaque = folder + "/" + name + ".exr", scene = folder + "/" + name + ".glb";

@@ -90,8 +90,8 @@ void measure(int layers) {
   ShadowMapSettings mapSettings;
   mapSettings.size = 2048;
   ShadowMapStatistics drawn;
-  settings.shadows = std::make_shared<const ShadowMaps>(
-      renderShadowMaps(context, scene, camera, nullptr, mapSettings, &drawn));
+  settings.shadows =
+      std::make_shared<const ShadowMaps>(renderShadowMaps(context, scene, camera, nullptr, mapSettings, &drawn));
   TransparentPass pass(context, scene, gbuffer, camera);
   StochasticPass stochastic(context, scene, gbuffer, camera);
   // The base of the paper is one fully shaded, blended pass: our sums with their fewest targets are its like.
@@ -113,8 +113,9 @@ void measure(int layers) {
                   layers, samples, winners ? "basic or alpha" : "depth", whole, whole / base, base, cover, add);
     }
 
-  std::printf("%2d layers, shadow maps of 3 lights, %d faces of 2048 and 1024: drawn in %.2f s, filtered in %.2f s, %zu MiB\n",
-              layers, static_cast<int>(drawn.faces), drawn.drawSeconds, drawn.filterSeconds, drawn.bytes >> 20);
+  std::printf(
+      "%2d layers, shadow maps of 3 lights, %d faces of 2048 and 1024: drawn in %.2f s, filtered in %.2f s, %zu MiB\n",
+      layers, static_cast<int>(drawn.faces), drawn.drawSeconds, drawn.filterSeconds, drawn.bytes >> 20);
   const auto start = Clock::now();
   const ShadowRays rays(scene, camera);
   for (std::size_t light = 0; light < 3; ++light) rays.visibility(light, gbuffer, 1);
@@ -122,8 +123,8 @@ void measure(int layers) {
   const double looked = secondsOf([&] {
     for (std::size_t light = 0; light < 3; ++light) mappedVisibility(*settings.shadows, light, gbuffer, camera, 1);
   });
-  std::printf("%2d layers, shadows of 3 lights on %d pixels: rays %.2f s, looked up in maps %.2f s\n", layers, kEdge * kEdge,
-              traced, looked);
+  std::printf("%2d layers, shadows of 3 lights on %d pixels: rays %.2f s, looked up in maps %.2f s\n", layers,
+              kEdge * kEdge, traced, looked);
 }
 
 }  // namespace

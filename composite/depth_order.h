@@ -35,8 +35,8 @@ bool rank(const float* z, std::size_t count, std::uint32_t* order) {
 
 }  // namespace ranking
 
-// Writes the indices of `count` depths from near to far. False, and nothing that means anything written, when two of them
-// are equal or one is not a number.
+// Writes the indices of `count` depths from near to far. False, and nothing that means anything written, when two of
+// them are equal or one is not a number.
 //   count  at most kMostRanked
 //   order  room for `count`
 inline bool orderByDepth(const float* z, std::size_t count, std::uint32_t* order) {

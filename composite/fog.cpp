@@ -166,10 +166,12 @@ FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample,
     std::vector<Fragment>& made = rows[static_cast<std::size_t>(y)];
     std::vector<float> cuts;
     for (int x = 0; x < width; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
       const float behind = std::min(gbuffer.viewZ.at(left + x, top + y), lists.solid.at(x, y).a);
       cuts.clear();
-      for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) cuts.push_back(lists.fragments[i].z);
+      for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
+        cuts.push_back(lists.fragments[i].z);
       std::sort(cuts.begin(), cuts.end());
       const std::size_t before = made.size();
       marchRuns(marcher, marcher.span(x, y, behind), cuts, behind, made);
@@ -186,14 +188,16 @@ FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample,
     std::size_t taken = 0;
     const std::vector<Fragment>& made = rows[static_cast<std::size_t>(y)];
     for (int x = 0; x < width; ++x, ++pixel) {
-      const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]), end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
+      const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
+                 end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
       result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
       const auto own = made.begin() + static_cast<std::ptrdiff_t>(taken);
       result.fragments.insert(result.fragments.end(), own, own + static_cast<std::ptrdiff_t>(counts[pixel]));
       taken += counts[pixel];
       result.offsets.push_back(result.fragments.size());
       if (!disperses) continue;
-      result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin, lists.dispersion.begin() + end);
+      result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
+                               lists.dispersion.begin() + end);
       result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
     }
   }

@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kPlanes = 7;
 using Terms = std::array<glm::vec4, kPlanes>;  // radiance, weight, opacity, depth, light, refraction, dispersion
 
-Terms termsOf(const FragmentLists& lists, std::size_t place, const shading::WeightSettings& weight, int normalisation, bool scatters,
-              float& diffuseZ) {
+Terms termsOf(const FragmentLists& lists, std::size_t place, const shading::WeightSettings& weight, int normalisation,
+              bool scatters, float& diffuseZ) {
   const Fragment& fragment = lists.fragments[place];
   const shading::Layer layer = layerFrom(fragment);
   const shading::OitTargets sums = shading::packSums(shading::layerSums(layer, weight, normalisation));

@@ -5,10 +5,10 @@
 
 namespace pellucid {
 
-// As foldFragments(), but each pixel's terms are added by shaders/shared/exact_sums.glsl, whose additions are exact, and
-// rounded once. The lists must hold every fragment of their pixels: sums already in the planes are replaced. Bits are the
-// same for every order of the lists; each plane is the true sum of its terms, but for 2^-84 of the largest of a thousand,
-// rounded to float.
+// As foldFragments(), but each pixel's terms are added by shaders/shared/exact_sums.glsl, whose additions are exact,
+// and rounded once. The lists must hold every fragment of their pixels: sums already in the planes are replaced. Bits
+// are the same for every order of the lists; each plane is the true sum of its terms, but for 2^-84 of the largest of a
+// thousand, rounded to float.
 void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation, OitPlanes& planes);
 
 }  // namespace pellucid

@@ -17,8 +17,7 @@ void blend(const shading::PublishedTargets& layer, PublishedPixel& pixel) {
   }
   pixel.beta[3] = static_cast<std::uint8_t>(std::min(pixel.beta[3] + shading::unormOf(layer.beta.a), 255));
   for (int c = 0; c < 2; ++c)
-    pixel.delta[c] =
-        static_cast<std::int8_t>(std::clamp(pixel.delta[c] + shading::snormOf(layer.delta[c]), -127, 127));
+    pixel.delta[c] = static_cast<std::int8_t>(std::clamp(pixel.delta[c] + shading::snormOf(layer.delta[c]), -127, 127));
 }
 
 }  // namespace

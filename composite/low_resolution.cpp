@@ -78,7 +78,8 @@ class Upsampler {
 
   Upsampled around(int x, int y) const {
     const float scale = 1.0f / static_cast<float>(view_.factor);
-    const glm::vec2 place = shading::placeInTexels(glm::vec2(static_cast<float>(x), static_cast<float>(y)), sample_, scale);
+    const glm::vec2 place =
+        shading::placeInTexels(glm::vec2(static_cast<float>(x), static_cast<float>(y)), sample_, scale);
     const int cx = static_cast<int>(std::floor(place.x + 0.5f)), cy = static_cast<int>(std::floor(place.y + 0.5f));
     const float opaqueZ = view_.opaqueZ.at(x, y);
     Upsampled up;
@@ -118,8 +119,7 @@ class Upsampler {
   }
 
   void add(const shading::LowLayer& layer, float nearestZ, int x, int y) const {
-    const shading::OitTargets added =
-        shading::packSums(shading::lowLayerSums(layer, planes_.info.normalisation));
+    const shading::OitTargets added = shading::packSums(shading::lowLayerSums(layer, planes_.info.normalisation));
     planes_.radiance.at(x, y) += added.radiance;
     planes_.weight.at(x, y) += added.weight;
     planes_.opacity.at(x, y) += added.opacity;

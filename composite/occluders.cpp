@@ -33,8 +33,7 @@ OccluderPlanes occludersOf(const GBuffer& gbuffer, const Camera& camera, Nearest
     if ((fromFile && !solids.lacking[i]) || !(solids.viewZ[i] <= 1e30f)) computed[i] = 0;
     fromDepth += computed[i];
   }
-  occluders.occlusion =
-      fromFile ? gbuffer.occlusion : Image<float>(solids.viewZ.width(), solids.viewZ.height(), 1.0f);
+  occluders.occlusion = fromFile ? gbuffer.occlusion : Image<float>(solids.viewZ.width(), solids.viewZ.height(), 1.0f);
   if (fromDepth > 0) {
     const Image<float> screen =
         screenOcclusion(solids.viewZ, camera, gbuffer.display, gbuffer.data, settings.screen, &computed);

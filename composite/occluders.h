@@ -27,7 +27,6 @@ struct OccluderSettings {
 //   wanted     pixels that matter; nullptr wants all
 //   fromDepth  how many were computed
 OccluderPlanes occludersOf(const GBuffer& gbuffer, const Camera& camera, NearestSolids solids,
-                           const OccluderSettings& settings, const Image<std::uint8_t>* wanted,
-                           std::size_t& fromDepth);
+                           const OccluderSettings& settings, const Image<std::uint8_t>* wanted, std::size_t& fromDepth);
 
 }  // namespace pellucid

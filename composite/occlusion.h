@@ -21,8 +21,8 @@ Image<float> solidDepth(const FoliagePlanes& layer, const Window& window);
 // Pixels of the occluders that some rim of the layer looks at.
 Image<std::uint8_t> occludersWanted(const FoliagePlanes& layer, const Window& occluders, int form);
 
-// What the opaque pixels beside a rim say: (weighted occlusion, weight), for shading::occlusionFrom. Pixels without depth
-// or with an occlusion that is not finite say nothing.
+// What the opaque pixels beside a rim say: (weighted occlusion, weight), for shading::occlusionFrom. Pixels without
+// depth or with an occlusion that is not finite say nothing.
 //   place  of the rim, in the occluders' window; may lie outside it
 //   z      of the rim, planar metres, > 0
 glm::vec2 neighboursOcclusion(const OccluderPlanes& occluders, glm::ivec2 place, const shading::OcclusionSearch& search,

@@ -29,10 +29,9 @@ Veil resolve(const OitPlanes& planes, const ResolveSettings& settings) {
         const glm::vec4 solid = planes.solid.at(x, y);
         const bool hasSolid = std::isfinite(solid.a);
         if (sums.count == 0.0f && !hasSolid) continue;
-        shading::Resolved resolved =
-            planes.published()
-                ? shading::resolvePublished(sums.numerator, sums.denominator.r, sums.depth, settings.selfModulation)
-                : shading::resolveSums(sums, settings.selfModulation);
+        shading::Resolved resolved = planes.published() ? shading::resolvePublished(sums.numerator, sums.denominator.r,
+                                                                                    sums.depth, settings.selfModulation)
+                                                        : shading::resolveSums(sums, settings.selfModulation);
         if (hasSolid) {
           resolved.transparent = shading::overBackground(resolved, glm::vec3(solid));
           resolved.transmission = glm::vec3(0.0f);

@@ -20,8 +20,7 @@ std::size_t occludeRims(const RimPlanes& rims, const OccluderPlanes& occluders, 
       ++found;
       const float z = added.a / averaged.a;
       const shading::OcclusionSearch search = shading::occlusionSearch(rims.gradient.at(x, y) / averaged.a);
-      const float hidden =
-          1.0f - shading::occlusionFrom(neighboursOcclusion(occluders, {x, y}, search, z, form), form);
+      const float hidden = 1.0f - shading::occlusionFrom(neighboursOcclusion(occluders, {x, y}, search, z, form), form);
       planes.radiance.at(x, y) -= glm::vec4(hidden * glm::vec3(averaged), 0.0f);
       planes.light.at(x, y) -= glm::vec4(hidden * glm::vec3(added), 0.0f);
     }

@@ -115,7 +115,8 @@ class Horizons {
       const double to = 1.0 + std::pow((step + 1.0) / kSteps, kStepPower) * std::max(reach - 1.0, 0.0);
       Tap& tap = taps[static_cast<std::size_t>(step)];
       tap.distance = from + jitter * (to - from);
-      for (double block = kBlock * (to - from); block >= 2.0 && tap.level < nearest_.levels(); block *= 0.5) ++tap.level;
+      for (double block = kBlock * (to - from); block >= 2.0 && tap.level < nearest_.levels(); block *= 0.5)
+        ++tap.level;
       from = to;
     }
     return taps;

@@ -1,7 +1,7 @@
-// Ambient occlusion from depth alone, for pictures that bring none: horizons along a few directions of the screen, seen in
-// the nearest pixels of blocks that grow with the distance, then a bilateral filter. Jimenez et al.: Practical Realtime
-// Strategies for Accurate Indirect Occlusion, 2016. What depth does not show, the far side of things among it, counts as
-// solid behind them.
+// Ambient occlusion from depth alone, for pictures that bring none: horizons along a few directions of the screen, seen
+// in the nearest pixels of blocks that grow with the distance, then a bilateral filter. Jimenez et al.: Practical
+// Realtime Strategies for Accurate Indirect Occlusion, 2016. What depth does not show, the far side of things among it,
+// counts as solid behind them.
 #pragma once
 #include <cstdint>
 

@@ -20,9 +20,8 @@ class Views {
       most = std::max(most, texel.z / texel.y);
     });
     const float range = most > least ? most - least : 1.0f;
-    return rgb(face, name + ".depth", [&](const glm::vec4& texel) {
-      return texel.y > 0.0f ? (texel.z / texel.y - least) / range : kNothing;
-    });
+    return rgb(face, name + ".depth",
+               [&](const glm::vec4& texel) { return texel.y > 0.0f ? (texel.z / texel.y - least) / range : kNothing; });
   }
 
   ExtraLayer hidden(const shading::ShadowFace& face, const std::string& name) const {
@@ -76,7 +75,9 @@ ShadowViews shadowViews(const ShadowMaps& maps, const std::vector<std::string>& 
   const Views views(maps, edge);
   for (std::size_t i = 0; i < maps.lights.size(); ++i) {
     const glm::ivec4& faces = maps.lights[i].faces;
-    const auto nameOf = [&](int face, int of) { return of > 1 ? names.at(i) + "." + std::to_string(face) : names.at(i); };
+    const auto nameOf = [&](int face, int of) {
+      return of > 1 ? names.at(i) + "." + std::to_string(face) : names.at(i);
+    };
     for (int f = 0; f < faces.y; ++f) {
       const shading::ShadowFace& face = maps.faces[static_cast<std::size_t>(faces.x + f)];
       result.layers.push_back(views.depth(face, nameOf(f, faces.y)));

@@ -13,9 +13,10 @@ struct ShadowViews {
   std::vector<ExtraLayer> layers;  // none when no light has a map
 };
 
-// Of each face of each light, per channel: NAME.depth, the mean depth of the casters that the coins left, 0 at the nearest
-// of the face and 1 at the farthest, 1.1 where there is none; and NAME.hidden, what all of them hide, [0,1]. Of opaque
-// casters NAME.opaque.Z, in the map's units. Faces of one light are numbered, NAME.0 and on, where it has several.
+// Of each face of each light, per channel: NAME.depth, the mean depth of the casters that the coins left, 0 at the
+// nearest of the face and 1 at the farthest, 1.1 where there is none; and NAME.hidden, what all of them hide, [0,1]. Of
+// opaque casters NAME.opaque.Z, in the map's units. Faces of one light are numbered, NAME.0 and on, where it has
+// several.
 //   names  of the lights, in the maps' order
 ShadowViews shadowViews(const ShadowMaps& maps, const std::vector<std::string>& names);
 

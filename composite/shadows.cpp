@@ -34,7 +34,8 @@ Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, con
           offset = glm::dvec2(0.0);
           depth = static_cast<double>(z);
         }
-        sum += glm::dvec3(maps.onOpaque(light, glm::vec3(viewPoint(gbuffer, camera, glm::dvec2(x, y) + offset, depth))));
+        sum +=
+            glm::dvec3(maps.onOpaque(light, glm::vec3(viewPoint(gbuffer, camera, glm::dvec2(x, y) + offset, depth))));
       }
       result.at(x, y) = glm::vec3(sum / static_cast<double>(samples));
     }

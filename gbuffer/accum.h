@@ -15,7 +15,7 @@ struct OitInfo {
   shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
   std::string tier = "float";  // "float", "exact" or "published"
-  std::string solidHash;  // of the solid plane: sums behind different solids do not add
+  std::string solidHash;       // of the solid plane: sums behind different solids do not add
 };
 
 // RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl and refraction.glsl pack them; every

@@ -198,15 +198,15 @@ struct DeepReader::Impl {
     // While these rows are unpacked, as many come from the file.
     const int next = y0 + static_cast<int>(lines.size());
     std::vector<DeepLine> ahead;
-    tbb::parallel_invoke(
-        [&] { readPacked(next, std::min(rows.window.y1 + rows.window.height(), y1), ahead); },
-        [&] {
-          tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t i) {
-            std::vector<float*> channels;
-            for (std::vector<float>& channel : rows.channels) channels.push_back(channel.data() + first[i]);
-            if (!lines[i].readSamples(*format, channels)) damagedLine(y0 + static_cast<int>(i));
-          });
-        });
+    tbb::parallel_invoke([&] { readPacked(next, std::min(rows.window.y1 + rows.window.height(), y1), ahead); },
+                         [&] {
+                           tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t i) {
+                             std::vector<float*> channels;
+                             for (std::vector<float>& channel : rows.channels)
+                               channels.push_back(channel.data() + first[i]);
+                             if (!lines[i].readSamples(*format, channels)) damagedLine(y0 + static_cast<int>(i));
+                           });
+                         });
     std::move(ahead.begin(), ahead.end(), std::back_inserter(lines));
     return rows;
   }

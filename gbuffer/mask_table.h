@@ -1,4 +1,5 @@
-// Random orders of S samples, from which stratified masks are cut: on the CPU, and on GL as a texture of the same ranks.
+// Random orders of S samples, from which stratified masks are cut: on the CPU, and on GL as a texture of the same
+// ranks.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -46,13 +46,13 @@ struct Box {
 
 // In the world's metres, y up.
 struct MediumSettings {
-  double density = 0.0;              // 1/m, extinction at the base; a grid multiplies it
-  double height = 0.0;               // metres over which it falls to 1/e; 0: even
-  double base = 0.0;                 // height of the base
-  glm::dvec3 albedo{1.0};            // of one scattering event, [0,1]
-  double g = 0.0;                    // -0.98 to 0.98, > 0 scatters forward
-  double farthest = 1000.0;          // metres from the eye beyond which there is none
-  int steps = 64;                    // of the march
+  double density = 0.0;      // 1/m, extinction at the base; a grid multiplies it
+  double height = 0.0;       // metres over which it falls to 1/e; 0: even
+  double base = 0.0;         // height of the base
+  glm::dvec3 albedo{1.0};    // of one scattering event, [0,1]
+  double g = 0.0;            // -0.98 to 0.98, > 0 scatters forward
+  double farthest = 1000.0;  // metres from the eye beyond which there is none
+  int steps = 64;            // of the march
   int order = shading::PLD_FOG_ORDERED;
   std::optional<Box> box;
   std::shared_ptr<const DensityGrid> grid;  // wins over the box
@@ -60,9 +60,9 @@ struct MediumSettings {
 
 // What of each light reaches the fog: visibility at texels, [0,1].
 struct LightVolume {
-  glm::ivec3 size{0};               // of one light
-  Volume<glm::vec4> visibility;     // lights above one another in z; a unused
-  glm::mat4 texelFromView{1.0f};    // centres at +0.5
+  glm::ivec3 size{0};             // of one light
+  Volume<glm::vec4> visibility;   // lights above one another in z; a unused
+  glm::mat4 texelFromView{1.0f};  // centres at +0.5
 };
 
 // Radiance of the surroundings up to the first order.
@@ -85,11 +85,12 @@ struct Fog {
 Fog placeFog(const MediumSettings& settings, const Camera& camera, const AmbientLight& ambient,
              std::vector<shading::PunctualLight> lights);
 
-// What of the world the fog of a picture may fill: boxes of box and grid, else what the rays pass that end on something.
+// What of the world the fog of a picture may fill: boxes of box and grid, else what the rays pass that end on
+// something.
 Box fogBounds(const MediumSettings& settings, const Camera& camera, const GBuffer& gbuffer);
 
-// Rays through the pixels of one camera: the origin is offset + scale * pixel where it is orthographic; else that is the
-// direction at z = 1. View space, pixels of the display window, y down.
+// Rays through the pixels of one camera: the origin is offset + scale * pixel where it is orthographic; else that is
+// the direction at z = 1. View space, pixels of the display window, y down.
 struct PixelRays {
   glm::vec2 offset{0.0f}, scale{0.0f};
   bool orthographic = false;

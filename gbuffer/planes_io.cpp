@@ -46,11 +46,11 @@ constexpr VectorPlane kScatterPlanes[] = {
 constexpr const char* kDiffuseZ = "oit.diffuse.Z";
 // What tier "published" holds of it: PT17 table 2, decoded, and the solid plane.
 constexpr VectorPlane kPublishedPlanes[] = {
-    {"oit.A.R", &OitPlanes::radiance, 0, true},    {"oit.A.G", &OitPlanes::radiance, 1, true},
-    {"oit.A.B", &OitPlanes::radiance, 2, true},    {"oit.W", &OitPlanes::weight, 0, true},
-    {"oit.beta.R", &OitPlanes::depth, 0, true},    {"oit.beta.G", &OitPlanes::depth, 1, true},
-    {"oit.beta.B", &OitPlanes::depth, 2, true},    {"oit.solid.R", &OitPlanes::solid, 0, true},
-    {"oit.solid.G", &OitPlanes::solid, 1, true},   {"oit.solid.B", &OitPlanes::solid, 2, true},
+    {"oit.A.R", &OitPlanes::radiance, 0, true},   {"oit.A.G", &OitPlanes::radiance, 1, true},
+    {"oit.A.B", &OitPlanes::radiance, 2, true},   {"oit.W", &OitPlanes::weight, 0, true},
+    {"oit.beta.R", &OitPlanes::depth, 0, true},   {"oit.beta.G", &OitPlanes::depth, 1, true},
+    {"oit.beta.B", &OitPlanes::depth, 2, true},   {"oit.solid.R", &OitPlanes::solid, 0, true},
+    {"oit.solid.G", &OitPlanes::solid, 1, true},  {"oit.solid.B", &OitPlanes::solid, 2, true},
     {"oit.solid.Z", &OitPlanes::solid, 3, false},
 };
 constexpr VectorPlane kPublishedScatterPlanes[] = {
@@ -77,8 +77,10 @@ PlaneSet scatterOf(bool published) {
 }
 // Only in files of scenes that disperse; all of them or none.
 constexpr VectorPlane kDispersionPlanes[] = {
-    {"oit.dispersion.RX", &OitPlanes::dispersion, 0, true}, {"oit.dispersion.RY", &OitPlanes::dispersion, 1, true},
-    {"oit.dispersion.BX", &OitPlanes::dispersion, 2, true}, {"oit.dispersion.BY", &OitPlanes::dispersion, 3, true},
+    {"oit.dispersion.RX", &OitPlanes::dispersion, 0, true},
+    {"oit.dispersion.RY", &OitPlanes::dispersion, 1, true},
+    {"oit.dispersion.BX", &OitPlanes::dispersion, 2, true},
+    {"oit.dispersion.BY", &OitPlanes::dispersion, 3, true},
 };
 
 // Only in files whose rims wait for their occlusion; all of them or none.
@@ -89,10 +91,10 @@ struct RimPlane {
   int component;
 };
 constexpr RimPlane<glm::vec4> kRimPlanes[] = {
-    {"oit.rim.R", &RimPlanes::averaged, 0},   {"oit.rim.G", &RimPlanes::averaged, 1},
-    {"oit.rim.B", &RimPlanes::averaged, 2},   {"oit.rim.W", &RimPlanes::averaged, 3},
-    {"oit.rim.E.R", &RimPlanes::added, 0},    {"oit.rim.E.G", &RimPlanes::added, 1},
-    {"oit.rim.E.B", &RimPlanes::added, 2},    {"oit.rim.Z", &RimPlanes::added, 3},
+    {"oit.rim.R", &RimPlanes::averaged, 0}, {"oit.rim.G", &RimPlanes::averaged, 1},
+    {"oit.rim.B", &RimPlanes::averaged, 2}, {"oit.rim.W", &RimPlanes::averaged, 3},
+    {"oit.rim.E.R", &RimPlanes::added, 0},  {"oit.rim.E.G", &RimPlanes::added, 1},
+    {"oit.rim.E.B", &RimPlanes::added, 2},  {"oit.rim.Z", &RimPlanes::added, 3},
 };
 constexpr RimPlane<glm::vec2> kRimGradients[] = {
     {"oit.rim.X", &RimPlanes::gradient, 0},
@@ -266,8 +268,7 @@ OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
   const OitInfo info = infoOf(header);
   const Camera camera = cameraOf(header);
   const bool published = info.tier == "published";
-  OitPlanes planes =
-      published ? emptyPublishedPlanes(part.display, part.data) : emptyPlanes(part.display, part.data);
+  OitPlanes planes = published ? emptyPublishedPlanes(part.display, part.data) : emptyPlanes(part.display, part.data);
   planes.info = info;
   planes.camera = camera;
   const auto readSet = [&](const PlaneSet& set) {
@@ -277,7 +278,8 @@ OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
                 [&](std::size_t i, float value) { image[i][plane.component] = value; });
     }
     if (set.scalarName)
-      readPlane(part, set.scalarName, false, path, [&](std::size_t i, float value) { (planes.*set.scalar)[i] = value; });
+      readPlane(part, set.scalarName, false, path,
+                [&](std::size_t i, float value) { (planes.*set.scalar)[i] = value; });
   };
   readSet(sumsOf(published));
   const PlaneSet scatter = scatterOf(published);
@@ -294,9 +296,8 @@ OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
     addDispersionPlane(planes);
     readSet({{std::begin(kDispersionPlanes), std::end(kDispersionPlanes)}});
   }
-  const bool apart = std::any_of(std::begin(kRimPlanes), std::end(kRimPlanes), [&](const RimPlane<glm::vec4>& plane) {
-    return part.find(plane.name) != nullptr;
-  });
+  const bool apart = std::any_of(std::begin(kRimPlanes), std::end(kRimPlanes),
+                                 [&](const RimPlane<glm::vec4>& plane) { return part.find(plane.name) != nullptr; });
   if (apart) {
     if (published) throw InputError(path + ": found oit.rim.* in tier published, expected none");
     RimPlanes found(part.data.width(), part.data.height());

@@ -27,7 +27,8 @@ void storePublished(const PublishedPixel& pixel, OitPlanes& planes, int x, int y
   const glm::vec2 delta(shading::fromSnorm(pixel.delta[0]), shading::fromSnorm(pixel.delta[1]));
   const shading::PublishedSums sums = shading::unpackPublished(pixel.radiance, beta, delta);
 
-  const float largest = std::max(std::max(pixel.radiance.r, pixel.radiance.g), std::max(pixel.radiance.b, pixel.radiance.a));
+  const float largest =
+      std::max(std::max(pixel.radiance.r, pixel.radiance.g), std::max(pixel.radiance.b, pixel.radiance.a));
   if (largest >= shading::PLD_HALF_LARGEST) ++clamps.radiance;
   if (pixel.beta[3] == 255) ++clamps.diffusion;
   if (std::abs(pixel.delta[0]) >= 127 || std::abs(pixel.delta[1]) >= 127) ++clamps.refraction;

@@ -7,14 +7,14 @@
 namespace pellucid {
 
 struct PublishedPixel {
-  glm::vec4 radiance{0.0f};                     // halves: sums of w C and of w o
-  std::uint8_t beta[4] = {255, 255, 255, 0};    // product of 1 - alpha (1 - t); sum of s^2 / 63^2
-  std::int8_t delta[2] = {0, 0};                // sum of o delta / 63
+  glm::vec4 radiance{0.0f};                   // halves: sums of w C and of w o
+  std::uint8_t beta[4] = {255, 255, 255, 0};  // product of 1 - alpha (1 - t); sum of s^2 / 63^2
+  std::int8_t delta[2] = {0, 0};              // sum of o delta / 63
 };
 
 // Numbers that did not fit, and were cut to the largest that does.
 struct PublishedClamps {
-  std::uint64_t written = 0;                               // what single layers wrote
+  std::uint64_t written = 0;                                  // what single layers wrote
   std::uint64_t radiance = 0, diffusion = 0, refraction = 0;  // sums at the end of their range, pixels
   std::uint64_t total() const { return written + radiance + diffusion + refraction; }
   PublishedClamps& operator+=(const PublishedClamps& other) {

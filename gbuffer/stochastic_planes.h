@@ -9,10 +9,10 @@
 namespace pellucid {
 
 struct StochasticPlanes {
-  Window data;  // display coordinates
+  Window data;                                       // display coordinates
   Image<glm::vec3> light, unit, added, empty, beta;  // as StochasticSums in composite/methods/stochastic.h
-  Image<glm::vec4> solid;     // nearest fragment that hides everything: rgb, planar z (+inf: none)
-  Image<float> frontZ;        // nearest layer, planar metres, +inf for none
+  Image<glm::vec4> solid;  // nearest fragment that hides everything: rgb, planar z (+inf: none)
+  Image<float> frontZ;     // nearest layer, planar metres, +inf for none
 };
 
 }  // namespace pellucid

@@ -11,8 +11,8 @@ using glm::intBitsToFloat;
 #define PLD_FN inline
 #define precise
 #include "shaders/shared/accumulate.glsl"
-#include "shaders/shared/environment.glsl"
 #include "shaders/shared/diffusion.glsl"
+#include "shaders/shared/environment.glsl"
 #include "shaders/shared/hash.glsl"
 #include "shaders/shared/lights.glsl"
 #include "shaders/shared/material.glsl"

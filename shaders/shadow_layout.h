@@ -21,7 +21,8 @@ inline ShadowGrid shadowGrid(bool filtered) {
 //   edge          texels as drawn
 //   rows          -1 where NDC's y runs against the rows, 1 where along them
 //   inner         part of the edge, on every side, that belongs to the faces beside this one. [0, 1/2)
-inline ShadowFace shadowFaceOf(const glm::dmat4& ndcFromSpace, int edge, const ShadowGrid& grid, double rows, double inner) {
+inline ShadowFace shadowFaceOf(const glm::dmat4& ndcFromSpace, int edge, const ShadowGrid& grid, double rows,
+                               double inner) {
   const double half = 0.5 * edge * grid.shrink;
   glm::dmat4 texels(0.0);  // and w; the last column multiplies w
   texels[0][0] = half;
@@ -37,8 +38,8 @@ inline ShadowFace shadowFaceOf(const glm::dmat4& ndcFromSpace, int edge, const S
   return face;
 }
 
-// A slanted sheet spreads over the tent's depths, and must not shadow itself: the reach of the slab that it seems to be,
-// at 45 degrees, in half texels as drawn; and that of a sheet without spread, sqrt(3) of the least deviation.
+// A slanted sheet spreads over the tent's depths, and must not shadow itself: the reach of the slab that it seems to
+// be, at 45 degrees, in half texels as drawn; and that of a sheet without spread, sqrt(3) of the least deviation.
 constexpr double kShadowBias = 12.0;
 constexpr float kSlabReach = 1.75e-3f;
 

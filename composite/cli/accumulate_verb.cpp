@@ -4,8 +4,8 @@
 
 #include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
-#include "composite/cli/render.h"
 #include "composite/cli/mixed.h"
+#include "composite/cli/render.h"
 #include "composite/cli/results.h"
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shot.h"
@@ -64,15 +64,18 @@ void accumulate(const AccumulateFlags& flags) {
   flags.method.applyTo(settings, shot->camera);
   flags.scatter.applyTo(settings);
   Air air(*shot, nullptr, flags.scenes, flags.scene.options(flags.read.unit, true));
-  settings.fog = flags.fog.place(*shot, air, flags.read.unit, flags.method.isPublished() ? "--precision published" : "", stages);
+  settings.fog =
+      flags.fog.place(*shot, air, flags.read.unit, flags.method.isPublished() ? "--precision published" : "", stages);
   settings.particleLight = flags.particles.place(*shot, air, stages);
   if (flags.foliage.isApart() && flags.method.precision != "float")
-    throw UsageError(fmt::format("--occlusion: found apart with --precision {}, expected float: rims are summed in floats",
-                                 flags.method.precision));
+    throw UsageError(
+        fmt::format("--occlusion: found apart with --precision {}, expected float: rims are summed in floats",
+                    flags.method.precision));
   GlContext context(flags.scene.device);
   TransparentPass pass(context, shot->scene, shot->opaque.gbuffer, shot->camera);
   flags.foliage.applyTo(settings, &pass, shot->opaque.gbuffer, shot->camera, stages);
-  const int factor = flags.lowRes.factorFor(shot->scene, flags.method.precision != "float" ? "--precision " + flags.method.precision : "");
+  const int factor = flags.lowRes.factorFor(
+      shot->scene, flags.method.precision != "float" ? "--precision " + flags.method.precision : "");
   PassStatistics statistics;
   const OitPlanes planes = stages.time("transparent pass", [&] {
     if (!flags.method.isExact())

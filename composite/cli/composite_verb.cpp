@@ -84,12 +84,13 @@ void composite(const CompositeFlags& flags) {
   flags.scatter.applyTo(settings.pass);
 
   // What works from lists of every fragment has no low resolution.
-  const std::string listed = settings.sortedTruth || settings.listMethod || settings.stochastic ? "--method " + flags.method.method
-                             : settings.tolerance                        ? "--tolerance"
-                             : flags.method.precision != "float"         ? "--precision " + flags.method.precision
-                             : flags.systems != "off"                    ? "--systems"
-                             : !shot->deep.empty() || shot->deepOpaque   ? "deep EXR"
-                                                                         : "";
+  const std::string listed = settings.sortedTruth || settings.listMethod || settings.stochastic
+                                 ? "--method " + flags.method.method
+                             : settings.tolerance                      ? "--tolerance"
+                             : flags.method.precision != "float"       ? "--precision " + flags.method.precision
+                             : flags.systems != "off"                  ? "--systems"
+                             : !shot->deep.empty() || shot->deepOpaque ? "deep EXR"
+                                                                       : "";
   settings.lowResolution = flags.lowRes.factorFor(shot->scene, listed);
   std::unique_ptr<GlContext> context;
   const auto device = [&]() -> GlContext& {

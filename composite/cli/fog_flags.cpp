@@ -46,7 +46,8 @@ double within(const std::string& key, const std::string& text, double least, dou
 
 int whole(const std::string& key, const std::string& text, int least, int most) {
   const double value = within(key, text, least, most);
-  if (value != std::floor(value)) throw UsageError(fmt::format("--fog: found {}={}, expected a whole number", key, text));
+  if (value != std::floor(value))
+    throw UsageError(fmt::format("--fog: found {}={}, expected a whole number", key, text));
   return static_cast<int>(value);
 }
 
@@ -82,7 +83,8 @@ void setKey(FogText& fog, const std::string& key, const std::string& text) {
   } else if (key == "box") {
     const std::vector<double> n = numbersOf(key, text);
     if (n.size() != 6 || !(n[3] > n[0] && n[4] > n[1] && n[5] > n[2]))
-      throw UsageError(fmt::format("--fog: found box={}, expected X:Y:Z of its low corner, then of its high one", text));
+      throw UsageError(
+          fmt::format("--fog: found box={}, expected X:Y:Z of its low corner, then of its high one", text));
     for (const double value : n) within("box", fmt::format("{}", value), -kMost, kMost);
     medium.box = Box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
   } else if (key == "up") {
@@ -136,7 +138,8 @@ FogText readFog(const std::string& text) {
   std::istringstream parts(text);
   for (std::string part; std::getline(parts, part, ',');) {
     const auto equals = part.find('=');
-    if (equals == std::string::npos) throw UsageError(fmt::format("--fog: found '{}', expected key=value or FILE.json", part));
+    if (equals == std::string::npos)
+      throw UsageError(fmt::format("--fog: found '{}', expected key=value or FILE.json", part));
     setKey(fog, part.substr(0, equals), part.substr(equals + 1));
   }
   return fog;

@@ -7,7 +7,8 @@
 namespace pellucid::cli {
 
 void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
-  std::string help = "Ambient occlusion of alpha-tested leaves: inferred for their rims, of their solid insides alone, off";
+  std::string help =
+      "Ambient occlusion of alpha-tested leaves: inferred for their rims, of their solid insides alone, off";
   std::vector<std::string> choices{"inferred", "solid", "off"};
   if (keepsApart) {
     help += ", or apart: planes of what rims get from around, for resolve to darken";
@@ -15,11 +16,11 @@ void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
   }
   verb.add_option("--occlusion", occlusion, help)->check(CLI::IsMember(choices))->capture_default_str();
   details[0] = verb.add_option("--occlusion-inference", inference, "published is PT17 listing 2 as printed")
-      ->check(CLI::IsMember({"relative", "published"}))
-      ->capture_default_str();
+                   ->check(CLI::IsMember({"relative", "published"}))
+                   ->capture_default_str();
   details[1] = verb.add_option("--occlusion-direct", direct, "How much of the occlusion darkens direct light too")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+                   ->check(CLI::Range(0.0, 1.0))
+                   ->capture_default_str();
   details[3] = verb.add_option("--occlusion-source", source,
                                "Occlusion of the picture itself: its AO channel where it has one, or from its depth")
                    ->check(CLI::IsMember({"auto", "screen"}))
@@ -27,7 +28,7 @@ void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
   details[2] = verb.add_option("--occlusion-radius", radius,
                                "Metres within which things occlude, where occlusion comes from depth; a tenth of the "
                                "depth without it")
-      ->check(CLI::PositiveNumber);
+                   ->check(CLI::PositiveNumber);
 }
 
 void FoliageFlags::applyTo(PassSettings& settings, TransparentPass* pass, const GBuffer& gbuffer, const Camera& camera,

@@ -10,8 +10,8 @@
 namespace pellucid::cli {
 
 // Hands on lists of windows that together cover the data window, from the top. Without a pass only the deep files'
-// samples are there; deep samples are filtered already, so `settings.sample` does not move them. Fog joins as runs between
-// the surfaces.
+// samples are there; deep samples are filtered already, so `settings.sample` does not move them. Fog joins as runs
+// between the surfaces.
 //   pass  may be null
 void eachList(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>& deep, const GBuffer& gbuffer,
               const PassSettings& settings, VolumeRule rule, const std::function<void(const FragmentLists&)>& tile);

@@ -23,10 +23,12 @@ int LowResFlags::factorFor(const Scene& scene, const std::string& why) const {
   const bool asked = option && option->count() > 0 && factor > 1;
   if (asked && !marked)
     throw UsageError(fmt::format(
-        "--low-res: found {}, but no transparent material is marked; expected --set MATERIAL.lowResolution=true", factor));
+        "--low-res: found {}, but no transparent material is marked; expected --set MATERIAL.lowResolution=true",
+        factor));
   if (!marked || factor == 1) return 1;
   if (why.empty()) return factor;
-  if (asked) throw UsageError(fmt::format("--low-res: found {} with {}, expected 1: it draws every fragment", factor, why));
+  if (asked)
+    throw UsageError(fmt::format("--low-res: found {} with {}, expected 1: it draws every fragment", factor, why));
   spdlog::info("{} draws every fragment: materials marked lowResolution are drawn at full resolution", why);
   return 1;
 }

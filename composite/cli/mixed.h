@@ -8,7 +8,8 @@
 
 namespace pellucid::cli {
 
-// --low-res: pixels per texel, in both axes, of materials marked lowResolution. What they are drawn at when nobody says.
+// --low-res: pixels per texel, in both axes, of materials marked lowResolution. What they are drawn at when nobody
+// says.
 constexpr int kLowResolution = 4;
 
 struct LowResFlags {

@@ -150,7 +150,8 @@ void occlusionVerb(const OcclusionFlags& flags) {
   for (std::size_t i = 0; i < foliage.coverage.size(); ++i) foliage.coverage[i] = layer.gbuffer.beauty[i].a;
 
   const int form = flags.inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE;
-  const OccluderPlanes occluders = stages.time("occluders", [&] { return occludersBeside(flags, opaque.gbuffer, foliage, form); });
+  const OccluderPlanes occluders =
+      stages.time("occluders", [&] { return occludersBeside(flags, opaque.gbuffer, foliage, form); });
   const InferredOcclusion inferred = stages.time("infer", [&] { return inferOcclusion(foliage, occluders, form); });
   if (inferred.withoutDepth > 0)
     spdlog::info("{}: {} of {} rim pixels have no depth and stay open", flags.layer, inferred.withoutDepth,

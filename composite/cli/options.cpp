@@ -219,8 +219,8 @@ void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
           "denominator for all channels");
     settings.tier = SumsTier::published;
   }
-  settings.normalisation =
-      isPublished() || normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED : shading::PLD_NORMALISE_SPECTRAL;
+  settings.normalisation = isPublished() || normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED
+                                                                         : shading::PLD_NORMALISE_SPECTRAL;
   settings.weight.kind = -1;
   for (const NamedWeight& named : kWeights)
     if (weight == named.name) settings.weight.kind = named.kind;

@@ -98,8 +98,9 @@ PointVisibility Air::surfacesAndParticles() {
 }
 
 void ParticleFlags::addTo(CLI::App& verb) {
-  verb.add_option("--particle-light", light,
-                  "Texels along the longest edge of what tells particles how much of the lamps reaches them; 0: all of it")
+  verb.add_option(
+          "--particle-light", light,
+          "Texels along the longest edge of what tells particles how much of the lamps reaches them; 0: all of it")
       ->check(CLI::Range(0, 512))
       ->capture_default_str();
 }

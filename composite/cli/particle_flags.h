@@ -1,4 +1,5 @@
-// The light in the air of a shot: what surfaces, fog and particles leave of its lamps, for fog and particles to look up.
+// The light in the air of a shot: what surfaces, fog and particles leave of its lamps, for fog and particles to look
+// up.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -27,7 +28,7 @@ class Air {
   bool hasParticles() const { return particles_.has_value(); }
   const Fog& particles() const { return *particles_; }  // as a medium
   // In the order of lightBlocks().
-  PointVisibility surfaces();                // without particles, where they are not in the maps
+  PointVisibility surfaces();  // without particles, where they are not in the maps
   PointVisibility surfacesAndParticles();
   const std::vector<std::size_t>& lights() const { return numbers_; }
 

@@ -64,8 +64,7 @@ class ListPainter {
       planes_.info.weight = sample_.weight;
       addFog(*sample_.fog, gbuffer_, sample_.sample, planes_);
     }
-    if (sums_)
-      return resolveSums(settings_.device, std::move(planes_), settings_.resolve, settings_.lookup, gbuffer_);
+    if (sums_) return resolveSums(settings_.device, std::move(planes_), settings_.resolve, settings_.lookup, gbuffer_);
     if (!planes_.scatters()) return veil;
     const Backdrop backdrop = backdropOf(gbuffer_, planes_.solid);
     const Lookups lookups(backdrop, planes_, settings_.lookup);
@@ -98,8 +97,8 @@ class ListPainter {
   }
 
   bool readsDepthAlone() const {
-    return settings_.sortedTruth && !settings_.tolerance && !stochastic_ && !scatters_ && !settings_.deepOpaque && pass_ &&
-           deep_.empty() && !sample_.fog;
+    return settings_.sortedTruth && !settings_.tolerance && !stochastic_ && !scatters_ && !settings_.deepOpaque &&
+           pass_ && deep_.empty() && !sample_.fog;
   }
 
   void composite(const FragmentLists& lists, Veil& veil) {
@@ -166,8 +165,8 @@ std::string weightFlags(const shading::WeightSettings& weight) {
   return fmt::format("--weight {} --weight-range {}:{}", name, weight.rangeNear, weight.rangeFar);
 }
 
-// One pass of samples drawn on the device. What they show of the background is looked up by the sums' scattering planes:
-// the pixel's scattering layers alone decide, under every method.
+// One pass of samples drawn on the device. What they show of the background is looked up by the sums' scattering
+// planes: the pixel's scattering layers alone decide, under every method.
 Veil sampleOnDevice(const RenderSettings& settings, TransparentPass& sums, const PassSettings& sample, int pass,
                     const GBuffer& gbuffer, StochasticMean& mean, PassStatistics& statistics) {
   const StochasticSettings& chosen = *settings.stochastic;
@@ -250,9 +249,8 @@ Veil renderVeil(TransparentPass* pass, std::vector<std::unique_ptr<DeepSource>>&
       statistics = pass->statistics();
       stages.time("average", [&] { mean.add(std::move(veil)); });
     } else if (stochastic && settings.sampler) {
-      Veil veil = stages.time("sample", [&] {
-        return sampleOnDevice(settings, *pass, sample, i, gbuffer, *stochastic, statistics);
-      });
+      Veil veil = stages.time(
+          "sample", [&] { return sampleOnDevice(settings, *pass, sample, i, gbuffer, *stochastic, statistics); });
       stages.time("average", [&] { mean.add(std::move(veil)); });
     } else if (settings.sortedTruth || settings.listMethod || stochastic || settings.tolerance || settings.exactSums ||
                settings.deepOpaque || !deep.empty() || !pass) {

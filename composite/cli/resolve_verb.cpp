@@ -55,9 +55,8 @@ void resolveVerb(const ResolveFlags& flags) {
   if (flags.lookup.onDevice() && planes.published())
     throw UsageError("--resolve: found gl with planes of tier published, expected cpu");
   if (flags.lookup.onDevice()) device.emplace(context.emplace());
-  const Veil veil = stages.time("resolve", [&] {
-    return resolveSums(device ? &*device : nullptr, planes, settings, lookup, opaque.gbuffer);
-  });
+  const Veil veil = stages.time(
+      "resolve", [&] { return resolveSums(device ? &*device : nullptr, planes, settings, lookup, opaque.gbuffer); });
   const Picture picture = stages.time("compose", [&] { return compose(veil, opaque.gbuffer); });
   std::vector<ExtraLayer> layers = requestedLayers(flags.layers, veil);
   if (wantsDebugLayers(flags.layers))

@@ -23,7 +23,7 @@ namespace pellucid::cli {
 namespace {
 
 constexpr int kParticleTexels = 24;  // a particle's width: the tent has 15
-constexpr int kOpaqueSize = 2048;  // texels along an edge of the maps that shadow transparent things
+constexpr int kOpaqueSize = 2048;    // texels along an edge of the maps that shadow transparent things
 
 std::pair<std::string, std::string> nameAndLayer(const std::string& text) {
   const auto equals = text.find('=');
@@ -106,8 +106,8 @@ std::shared_ptr<const ShadowMaps> drawMaps(const ShadowFlags& flags, const Shot&
   ShadowMapStatistics statistics;
   auto maps = std::make_shared<const ShadowMaps>(
       renderShadowMaps(device, shot.scene, shot.camera, &shot.opaque.gbuffer, settings, &statistics));
-  spdlog::info("shadow maps of {0}x{0}: {1} faces, {2} MiB, drawn in {3:.2f} s, filtered in {4:.2f} s", settings.size, statistics.faces,
-               statistics.bytes >> 20, statistics.drawSeconds, statistics.filterSeconds);
+  spdlog::info("shadow maps of {0}x{0}: {1} faces, {2} MiB, drawn in {3:.2f} s, filtered in {4:.2f} s", settings.size,
+               statistics.faces, statistics.bytes >> 20, statistics.drawSeconds, statistics.filterSeconds);
   return maps;
 }
 
@@ -117,7 +117,8 @@ void writeViews(const std::string& path, const ShadowMaps& maps, const std::vect
   std::size_t next = 0;
   for (const Light& light : lights) names.push_back(shines(light) ? shining[next++] : std::string());
   const ShadowViews views = shadowViews(maps, names);
-  if (views.layers.empty()) throw MeaningError("--shadow-views: found nothing that casts into a map, expected a caster");
+  if (views.layers.empty())
+    throw MeaningError("--shadow-views: found nothing that casts into a map, expected a caster");
   say(writeLayers(path, views.window, views.window, views.layers));
 }
 
@@ -135,15 +136,18 @@ ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
 
 void ShadowFlags::addTo(CLI::App& verb) {
   verb.add_option("--shadows", shadows,
-                  "Shadows of transparent things on the opaque picture and on each other, from the glTF's punctual lights; exact: by "
-                  "rays, one for each light and fragment; exact:opaque: as if what covers half hid all; stochastic: by prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
+                  "Shadows of transparent things on the opaque picture and on each other, from the glTF's punctual "
+                  "lights; exact: by "
+                  "rays, one for each light and fragment; exact:opaque: as if what covers half hid all; stochastic: by "
+                  "prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
                   "corrected: maps without a filter, percentage closer")
       ->check(CLI::IsMember({"off", "exact", "exact:opaque", "stochastic", "stochastic:published", "stochastic:naive",
                              "stochastic:stratified", "stochastic:corrected"}))
       ->capture_default_str();
   sizeOption_ = verb.add_option("--shadow-size", size,
                                 "Of --shadows stochastic: texels along an edge of a map as drawn, a multiple of 128; "
-                                "prefiltered maps keep a quarter, faces of point lights have half; without it 4096, or less where dense particles "
+                                "prefiltered maps keep a quarter, faces of point lights have half; without it 4096, or "
+                                "less where dense particles "
                                 "alone cast, of which one is then 24 texels wide")
                     ->check(CLI::Range(128, 16384));
   verb.add_option("--light", lights,
@@ -151,9 +155,10 @@ void ShadowFlags::addTo(CLI::App& verb) {
       ->allow_extra_args(false);
   verb.add_flag("--apply-shadows", apply,
                 "Without such layers: multiply the beauty by the layer `shadow`, which is otherwise only written");
-  verb.add_option("--shadow-views", views,
-                  "Of --shadows stochastic: EXR to write what the maps hold to, for each light the casters' depth and what "
-                  "they hide; of stochastic:naive texel by texel");
+  verb.add_option(
+      "--shadow-views", views,
+      "Of --shadows stochastic: EXR to write what the maps hold to, for each light the casters' depth and what "
+      "they hide; of stochastic:naive texel by texel");
 }
 
 int ShadowFlags::sizeFor(const Scene& scene) const {

@@ -31,8 +31,8 @@ struct ShadowFlags {
 };
 
 struct ShadowResult {
-  Image<std::uint8_t> touched;     // opaque pixels that changed; empty with --shadows off
-  std::vector<ExtraLayer> layers;  // `shadow`, where no layer of a light was there to dim
+  Image<std::uint8_t> touched;             // opaque pixels that changed; empty with --shadows off
+  std::vector<ExtraLayer> layers;          // `shadow`, where no layer of a light was there to dim
   std::shared_ptr<const ShadowMaps> maps;  // null unless shadows are by maps
   std::shared_ptr<const ShadowRays> rays;  // null unless they are exact
 };

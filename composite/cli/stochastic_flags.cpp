@@ -29,13 +29,15 @@ void StochasticFlags::addTo(CLI::App& verb) {
                                                "together; without it the first multiple of --aa from {}",
                                                kDefaultSamples))
                        ->check(CLI::Range(1, StochasticSettings::kMostSamples));
-  adaptiveOption_ = verb.add_option("--samples-adaptive", adaptive,
-                                    "Of --method stochastic: more sets of --samples where they are needed, until the standard "
-                                    "error of a pixel's layers is E times the larger of 1 and their light")
-                        ->check(CLI::Range(1e-6, 1.0));
-  seedOption_ = verb.add_option("--seed", seed, "Of --method stochastic and --shadows stochastic: another seed, other noise")
-                    ->check(CLI::NonNegativeNumber)
-                    ->capture_default_str();
+  adaptiveOption_ =
+      verb.add_option("--samples-adaptive", adaptive,
+                      "Of --method stochastic: more sets of --samples where they are needed, until the standard "
+                      "error of a pixel's layers is E times the larger of 1 and their light")
+          ->check(CLI::Range(1e-6, 1.0));
+  seedOption_ =
+      verb.add_option("--seed", seed, "Of --method stochastic and --shadows stochastic: another seed, other noise")
+          ->check(CLI::NonNegativeNumber)
+          ->capture_default_str();
   masksOption_ = verb.add_option("--masks", masks, "Of --method stochastic: naive flips a coin per sample")
                      ->check(CLI::IsMember({"stratified", "naive"}))
                      ->capture_default_str();
@@ -43,18 +45,19 @@ void StochasticFlags::addTo(CLI::App& verb) {
                                       "Of --method stochastic:depth: scale to the exact net opacity; off is unbiased")
                           ->check(CLI::IsMember({"on", "off"}))
                           ->capture_default_str();
-  sampledOption_ = verb.add_option("--sampled-on", sampledOn,
-                                   "Of --method stochastic: the CPU samples lists of every fragment, gl draws the samples "
-                                   "in two passes, three but for stochastic:depth; the same picture but for rounding")
-                       ->check(CLI::IsMember({"cpu", "gl"}))
-                       ->capture_default_str();
+  sampledOption_ =
+      verb.add_option("--sampled-on", sampledOn,
+                      "Of --method stochastic: the CPU samples lists of every fragment, gl draws the samples "
+                      "in two passes, three but for stochastic:depth; the same picture but for rounding")
+          ->check(CLI::IsMember({"cpu", "gl"}))
+          ->capture_default_str();
 }
 
-std::optional<StochasticSettings> StochasticFlags::settings(const std::string& method, int passes,
-                                                            bool shadows) const {
+std::optional<StochasticSettings> StochasticFlags::settings(const std::string& method, int passes, bool shadows) const {
   const std::optional<Variant> variant = stochasticVariant(method);
   if (!variant) {
-    for (const CLI::Option* option : {samplesOption_, adaptiveOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
+    for (const CLI::Option* option :
+         {samplesOption_, adaptiveOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
       if (option && option->count() > 0 && !(shadows && option == seedOption_))
         throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(), method,
                                      kStochasticNames));

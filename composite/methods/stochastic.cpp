@@ -124,16 +124,18 @@ StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, c
   return sums;
 }
 
-StochasticSums samplePixelAdaptively(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
-                                     const MaskTable& masks, const StochasticShare& share, int& taken) {
+StochasticSums samplePixelAdaptively(std::vector<MethodLayer>& layers, glm::ivec2 pixel,
+                                     const StochasticSettings& settings, const MaskTable& masks,
+                                     const StochasticShare& share, int& taken) {
   StochasticSums mean = samplePixel(layers, pixel, settings, masks, share);
   taken = 1;
   // A lone layer has no noise where its sums are scaled to the exact opacity.
-  const bool corrected = settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
+  const bool corrected =
+      settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
   if (layers.size() < (corrected ? 2u : 1u)) return mean;
   const dvec3 hidden = dvec3(1.0) - mean.beta;
   // What is noisy: the light, and where nothing scales it the share of the background that shows.
-  const auto noisy = [&](const StochasticSums& sums, dvec3 (&values)[2]) {
+  const auto noisy = [&](const StochasticSums& sums, dvec3(&values)[2]) {
     values[0] = stochasticLight(sums, hidden, settings);
     values[1] = corrected || settings.variant == Variant::depth ? dvec3(0.0) : sums.empty;
   };

@@ -54,8 +54,9 @@ StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, c
 
 // Averages sets of samples until the standard error is low, as StochasticSettings::adaptive says.
 //   taken   how many sets
-StochasticSums samplePixelAdaptively(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
-                                     const MaskTable& masks, const StochasticShare& share, int& taken);
+StochasticSums samplePixelAdaptively(std::vector<MethodLayer>& layers, glm::ivec2 pixel,
+                                     const StochasticSettings& settings, const MaskTable& masks,
+                                     const StochasticShare& share, int& taken);
 
 // ST10 sections 3.3, 3.4 and 4: the layers' light after correction.
 //   hidden  exact net opacity 1 - beta, filtered over the pixel's passes

@@ -28,8 +28,8 @@ std::string load(pld_get_proc_address get, void* user, GlFunctions& gl) {
   const GLubyte* text = getString ? getString(GL_VERSION) : nullptr;
   if (!text) return "OpenGL 3.3: found no context that is current on this thread";
   const char* missing = nullptr;
-#define PLD_GL_ASK(name, type)            \
-  ask(get, user, "gl" #name, gl.name);    \
+#define PLD_GL_ASK(name, type)         \
+  ask(get, user, "gl" #name, gl.name); \
   if (!gl.name && !missing) missing = "gl" #name;
   PLD_GL_REQUIRED(PLD_GL_ASK)
 #undef PLD_GL_ASK

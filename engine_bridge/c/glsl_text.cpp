@@ -90,9 +90,11 @@ std::string hostText(const std::string& file, const std::vector<std::string>& de
     if (word == "PLD_UNIT_1") return unit(1);
     if (word == "PLD_UNIT_2") return unit(2);
     if (word == "PLD_UNIT_3") return unit(3);
-    if (own.count(word) && word.rfind("PLD_", 0) == 0) return names.constants[0] ? names.constants + word.substr(4) : word;
+    if (own.count(word) && word.rfind("PLD_", 0) == 0)
+      return names.constants[0] ? names.constants + word.substr(4) : word;
     // Of the shared text pldExp() and its like are not the host's to call, but theirs is the name in the layers' seam.
-    const bool hosts = word.rfind("Pld", 0) == 0 || (word.rfind("pld", 0) == 0 && (!names.constants[0] || isPublic(word)));
+    const bool hosts =
+        word.rfind("Pld", 0) == 0 || (word.rfind("pld", 0) == 0 && (!names.constants[0] || isPublic(word)));
     if (own.count(word) && !hosts) return names.prefix + word;
     return withoutPreciseBelow400(word, version);
   });
@@ -121,16 +123,49 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
 
 std::vector<std::string> storageDefines(int first) {
   std::vector<std::string> defines;
-  for (int i = 0; i < kListBlocks; ++i) defines.push_back("PLD_STORAGE_" + std::to_string(i) + " " + storageLayout(first + i));
+  for (int i = 0; i < kListBlocks; ++i)
+    defines.push_back("PLD_STORAGE_" + std::to_string(i) + " " + storageLayout(first + i));
   return defines;
 }
 
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
   return hostText("gl/seam.glsl", seamDefines(permutation, stage),
-                  {"PUBLISHED", "GREY", "LEAN", "HALF", "FRONT_TAIL", "SCATTER", "DIFFUSE_IN_ALPHA", "NO_DIFFUSE", "REFRACTS", "DIFFUSES", "DISPERSION", "SOLIDS",
-                   "EXACT", "LISTS_OFFSETS", "STAGE_SOLIDS", "STAGE_FRONT", "STAGE_RIMS", "RIMS", "RIMS_HERE", "DEPTH_IN_SHADER", "UNCOUNTED", "WEIGHT", "NORMALISATION",
-                   "ROWS", "UNITS", "EXPOSURE", "ORTHOGRAPHIC", "RANGE_NEAR", "RANGE_FAR", "EXPONENT", "REFRACT", "REFRACT_DISTANCE",
-                   "DIFFUSION_K0", "DIFFUSION_K1", "FOCAL_X", "FOCAL_Y"},
+                  {"PUBLISHED",
+                   "GREY",
+                   "LEAN",
+                   "HALF",
+                   "FRONT_TAIL",
+                   "SCATTER",
+                   "DIFFUSE_IN_ALPHA",
+                   "NO_DIFFUSE",
+                   "REFRACTS",
+                   "DIFFUSES",
+                   "DISPERSION",
+                   "SOLIDS",
+                   "EXACT",
+                   "LISTS_OFFSETS",
+                   "STAGE_SOLIDS",
+                   "STAGE_FRONT",
+                   "STAGE_RIMS",
+                   "RIMS",
+                   "RIMS_HERE",
+                   "DEPTH_IN_SHADER",
+                   "UNCOUNTED",
+                   "WEIGHT",
+                   "NORMALISATION",
+                   "ROWS",
+                   "UNITS",
+                   "EXPOSURE",
+                   "ORTHOGRAPHIC",
+                   "RANGE_NEAR",
+                   "RANGE_FAR",
+                   "EXPONENT",
+                   "REFRACT",
+                   "REFRACT_DISTANCE",
+                   "DIFFUSION_K0",
+                   "DIFFUSION_K1",
+                   "FOCAL_X",
+                   "FOCAL_Y"},
                   version, places, {"PLD_SEAM", "pld_", ""});
 }
 

@@ -29,8 +29,8 @@ struct SeamPlaces {
 constexpr int kListBlocks = 5;
 std::vector<std::string> storageDefines(int first);
 
-// Texts for hosts, without a #version line. Names that the host does not call begin with pld_, so that they meet none of
-// its own; a shader may hold several of the texts.
+// Texts for hosts, without a #version line. Names that the host does not call begin with pld_, so that they meet none
+// of its own; a shader may hold several of the texts.
 //   version  of GLSL, 330 to 460; below 420 units and binding are left to pld_connect()
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places);
 std::string casterText(bool coloured, int version, const SeamPlaces& places);

@@ -34,8 +34,8 @@ bool pld_pass::isCurrent() const {
 }
 
 uint32_t pld_pass::stagesNeeded() const {
-  return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) | (permutation_.rimsApart() ? 1u << PLD_STAGE_RIMS : 0u) |
-         (permutation_.low() ? 1u << PLD_STAGE_LOW : 0u) |
+  return (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u << PLD_STAGE_SOLIDS : 0u) |
+         (permutation_.rimsApart() ? 1u << PLD_STAGE_RIMS : 0u) | (permutation_.low() ? 1u << PLD_STAGE_LOW : 0u) |
          (permutation_.frontStage() ? 1u << PLD_STAGE_FRONT : 0u) | 1u << PLD_STAGE_LAYERS;
 }
 
@@ -66,8 +66,10 @@ pld_status pld_pass::makePrograms() {
   };
   const std::vector<std::string> defines = resolveDefines(permutation_);
   build(picture_, "gl/picture.frag", defines);
-  if (gl.onProcessor && permutation_.tier == PLD_TIER_FLOAT) build(emptyPlanes_, "gl/empty_planes.frag", emptyDefines(planesOf(permutation_)));
-  if (permutation_.planarDepth()) build(planarDepth_, "gl/planar_depth.frag", depthDefines(permutation_.depth, info_.clip));
+  if (gl.onProcessor && permutation_.tier == PLD_TIER_FLOAT)
+    build(emptyPlanes_, "gl/empty_planes.frag", emptyDefines(planesOf(permutation_)));
+  if (permutation_.planarDepth())
+    build(planarDepth_, "gl/planar_depth.frag", depthDefines(permutation_.depth, info_.clip));
   if (permutation_.has(PLD_FEATURE_DIFFUSION)) build(spreadLevel_, "gl/spread_level.frag", defines);
   if (permutation_.rimsApart()) build(rimsApply_, "gl/rims_apply.frag", defines);
   if (permutation_.low() && failure.empty()) failure = buildLowPrograms();
@@ -99,7 +101,8 @@ pld_status pld_pass::create(const pld_create_info& info) {
   gl.GetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
   gl.GetIntegerv(GL_MAX_DRAW_BUFFERS, &drawBuffers);
   const int lastUnit = std::min(units, kMostUnits) - permutation_.seamUnits();
-  if (info.uniform_binding >= static_cast<uint32_t>(bindings) || lastUnit < 0 || info.texture_unit > static_cast<uint32_t>(lastUnit))
+  if (info.uniform_binding >= static_cast<uint32_t>(bindings) || lastUnit < 0 ||
+      info.texture_unit > static_cast<uint32_t>(lastUnit))
     return fail(PLD_ERROR_ARGUMENT, "pld_create: uniform_binding %u, texture_unit %u: expected below %d and at most %d",
                 info.uniform_binding, info.texture_unit, bindings, lastUnit);
   if (drawBuffers < kDrawBuffers)
@@ -123,8 +126,8 @@ pld_status pld_pass::create(const pld_create_info& info) {
   for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     gl.SamplerParameteri(sampler_, wrap, GL_CLAMP_TO_EDGE);
   gl.SamplerParameteri(sampler_, GL_TEXTURE_COMPARE_MODE, GL_NONE);
-  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
-                        &lowDepthFrame_, &lowTexelFrame_, &lowOverFrame_, &targetFrame_}) {
+  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_,
+                        &lowFrame_, &lowDepthFrame_, &lowTexelFrame_, &lowOverFrame_, &targetFrame_}) {
     gl.GenFramebuffers(1, frame);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, *frame);
   }
@@ -152,11 +155,12 @@ void pld_pass::destroyObjects() {
   releaseTextures();
   releaseShadows();
   timers_.destroy(gl);
-  for (Program* program : {&emptyPlanes_, &planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_, &lowTexel_, &upsample_, &viewRims_, &viewLow_})
+  for (Program* program : {&emptyPlanes_, &planarDepth_, &picture_, &view_, &spreadLevel_, &rimsApply_, &lowDepth_,
+                           &lowTexel_, &upsample_, &viewRims_, &viewLow_})
     program->destroy(gl);
   for (Program& program : folds_) program.destroy(gl);
-  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_, &lowFrame_,
-                        &lowDepthFrame_, &lowTexelFrame_, &lowOverFrame_, &targetFrame_})
+  for (GLuint* frame : {&layersFrame_, &frontFrame_, &solidFrame_, &planarFrame_, &spreadFrame_, &rimsFrame_,
+                        &lowFrame_, &lowDepthFrame_, &lowTexelFrame_, &lowOverFrame_, &targetFrame_})
     if (*frame) gl.DeleteFramebuffers(1, frame);
   if (vertexArray_) gl.DeleteVertexArrays(1, &vertexArray_);
   if (sampler_) gl.DeleteSamplers(1, &sampler_);
@@ -176,7 +180,8 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
       value = planes_.size();
       return PLD_OK;
     case PLD_VALUE_GEOMETRY_PASSES:
-      value = 1u + (permutation_.frontStage() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (permutation_.rimsApart() ? 1u : 0u);
+      value = 1u + (permutation_.frontStage() ? 1u : 0u) + (permutation_.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) +
+              (permutation_.rimsApart() ? 1u : 0u);
       return PLD_OK;
     case PLD_VALUE_NS_BEGIN:
     case PLD_VALUE_NS_DRAWS:
@@ -190,7 +195,8 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
       return PLD_OK;
     case PLD_VALUE_FRAGMENTS:
     case PLD_VALUE_FRAGMENT_ROOM:
-      if (!permutation_.exact()) return fail(PLD_ERROR_UNSUPPORTED, "pld_query: fragments are counted in PLD_TIER_EXACT alone");
+      if (!permutation_.exact())
+        return fail(PLD_ERROR_UNSUPPORTED, "pld_query: fragments are counted in PLD_TIER_EXACT alone");
       value = what == PLD_VALUE_FRAGMENTS ? fragments_ : room_;
       return PLD_OK;
     case PLD_VALUE_SHADOW_TEXTURE:
@@ -226,9 +232,12 @@ pld_status pld_pass::seam(pld_stage stage, int version, const char*& text) {
     return fail(PLD_ERROR_ARGUMENT, "pld_glsl: this pass has no stage %d", static_cast<int>(stage));
   if (const pld_status status = checkGlsl("pld_glsl", version); status != PLD_OK) return status;
   if (permutation_.exact() && version < 430)
-    return fail(PLD_ERROR_UNSUPPORTED, "pld_glsl: found version %d, expected 430 or later: the exact tier writes to storage buffers", version);
+    return fail(PLD_ERROR_UNSUPPORTED,
+                "pld_glsl: found version %d, expected 430 or later: the exact tier writes to storage buffers", version);
   std::string& kept = seams_[stage];
-  kept = seamText(permutation_, stage, version, {static_cast<int>(info_.uniform_binding), static_cast<int>(info_.texture_unit), static_cast<int>(info_.storage_binding)});
+  kept = seamText(permutation_, stage, version,
+                  {static_cast<int>(info_.uniform_binding), static_cast<int>(info_.texture_unit),
+                   static_cast<int>(info_.storage_binding)});
   text = kept.c_str();
   return PLD_OK;
 }
@@ -236,7 +245,8 @@ pld_status pld_pass::seam(pld_stage stage, int version, const char*& text) {
 pld_status pld_pass::connect(GLuint program) {
   GLint linked = GL_FALSE;
   if (gl.IsProgram(program)) gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
-  if (!linked) return fail(PLD_ERROR_ARGUMENT, "pld_connect: found %u, expected a linked program of this context", program);
+  if (!linked)
+    return fail(PLD_ERROR_ARGUMENT, "pld_connect: found %u, expected a linked program of this context", program);
   const std::pair<const char*, GLuint> blocks[] = {{"PldFrame", info_.uniform_binding},
                                                    {"PldShadowFrame", info_.uniform_binding},
                                                    {"PldShadows", shadowInfo_.uniform_binding}};

@@ -38,7 +38,7 @@ struct pld_pass {
   static constexpr int kLevels = 25, kSpreadPlanes = 5, kStages = 5, kRimPlanes = 3, kLowTexels = 3;
   static constexpr int kMostFaces = 96;
   enum class FaceKind : uint8_t { empty, directional, local };  // of a shadow map, as it was drawn
-  enum class Step { sizeless, between, open, drawn };  // of a frame; drawn: a stage ended, no resolve yet
+  enum class Step { sizeless, between, open, drawn };           // of a frame; drawn: a stage ended, no resolve yet
 
   struct Plane {
     pellucid::c::PlaneSpec spec;
@@ -112,14 +112,18 @@ struct pld_pass {
   pellucid::c::Permutation permutation_;
   pellucid::c::SavedState saved_;
   pellucid::c::Timers timers_;
-  pellucid::c::Program emptyPlanes_, planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_, upsample_, viewRims_, viewLow_;
+  pellucid::c::Program emptyPlanes_, planarDepth_, picture_, view_, spreadLevel_, rimsApply_, lowDepth_, lowTexel_,
+      upsample_, viewRims_, viewLow_;
   GLuint vertexArray_ = 0, sampler_ = 0, uniforms_ = 0;
-  GLuint lowFrame_ = 0, lowDepthFrame_ = 0, lowTexelFrame_ = 0, lowOverFrame_ = 0, rimsFrame_ = 0, layersFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
+  GLuint lowFrame_ = 0, lowDepthFrame_ = 0, lowTexelFrame_ = 0, lowOverFrame_ = 0, rimsFrame_ = 0, layersFrame_ = 0,
+         frontFrame_ = 0, solidFrame_ = 0, planarFrame_ = 0, spreadFrame_ = 0, targetFrame_ = 0;
   std::vector<Plane> planes_, low_;  // of the layers, of those of low resolution
-  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {}, lowFarZ_ = 0, lowTexels_[kLowTexels] = {}, lowOver_[2] = {};
+  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0, spread_[kSpreadPlanes] = {}, rims_[kRimPlanes] = {},
+         lowFarZ_ = 0, lowTexels_[kLowTexels] = {}, lowOver_[2] = {};
   GLint levels_[kLevels][4] = {};
   int levelCount_ = 0, atlasWidth_ = 0, atlasHeight_ = 0;
-  // Exact tier: blocks of shaders/gl/exact_lists.glsl, what each stage's are folded by, and fragments of the newest frame.
+  // Exact tier: blocks of shaders/gl/exact_lists.glsl, what each stage's are folded by, and fragments of the newest
+  // frame.
   GLuint lists_[pellucid::c::kMostStorage] = {};
   pellucid::c::Program folds_[kStages];
   uint64_t room_ = 0, fragments_ = 0;

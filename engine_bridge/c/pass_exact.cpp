@@ -28,22 +28,29 @@ Storage pld_pass::storageOf() const {
 
 pld_status pld_pass::checkLists(const pld_create_info& info) {
   if (!gl.ClearBufferSubData || !gl.GetBufferSubData || !gl.GetInteger64v || !gl.MemoryBarrier)
-    return fail(PLD_ERROR_UNSUPPORTED, "pld_create: PLD_TIER_EXACT needs OpenGL 4.3: found %d.%d", gl.version / 10, gl.version % 10);
+    return fail(PLD_ERROR_UNSUPPORTED, "pld_create: PLD_TIER_EXACT needs OpenGL 4.3: found %d.%d", gl.version / 10,
+                gl.version % 10);
   if (!(info.fragments_per_pixel > 0.0f) || info.fragments_per_pixel > kMostAPixel)
-    return fail(PLD_ERROR_ARGUMENT, "pld_create: fragments_per_pixel: found %g, expected more than 0 and at most %g in PLD_TIER_EXACT",
+    return fail(PLD_ERROR_ARGUMENT,
+                "pld_create: fragments_per_pixel: found %g, expected more than 0 and at most %g in PLD_TIER_EXACT",
                 static_cast<double>(info.fragments_per_pixel), static_cast<double>(kMostAPixel));
   GLint bindings = 0, blocks = 0, resources = 0;
   gl.GetIntegerv(GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES, &resources);
   gl.GetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &bindings);
   gl.GetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &blocks);
   if (blocks < listBlocks() || bindings < listBlocks())
-    return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d storage blocks for fragments, expected %d", blocks, listBlocks());
+    return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d storage blocks for fragments, expected %d", blocks,
+                listBlocks());
   // By what folds a stage; without scattering sums have an output for the nearest depth, plane or none.
   const std::size_t planes = planesOf(permutation_).size() + (permutation_.lean() || permutation_.scatters() ? 0u : 1u);
-  const int written = listBlocks() + static_cast<int>(permutation_.low() ? std::max(planes, lowPlanes().size()) : planes);
-  if (resources < written) return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d blocks and outputs for a shader, expected %d", resources, written);
+  const int written =
+      listBlocks() + static_cast<int>(permutation_.low() ? std::max(planes, lowPlanes().size()) : planes);
+  if (resources < written)
+    return fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d blocks and outputs for a shader, expected %d", resources,
+                written);
   if (info.storage_binding > static_cast<uint32_t>(bindings - listBlocks()))
-    return fail(PLD_ERROR_ARGUMENT, "pld_create: storage_binding: found %u, expected at most %d", info.storage_binding, bindings - listBlocks());
+    return fail(PLD_ERROR_ARGUMENT, "pld_create: storage_binding: found %u, expected at most %d", info.storage_binding,
+                bindings - listBlocks());
   return PLD_OK;
 }
 
@@ -54,7 +61,8 @@ std::string pld_pass::buildFolds() {
     if (!(stagesNeeded() & (1u << stage)) || !failure.empty()) continue;
     std::vector<std::string> defines = foldDefines(stage == PLD_STAGE_LOW ? lowPermutation() : permutation_, stage);
     defines.insert(defines.end(), places.begin(), places.end());
-    failure = folds_[stage].build(gl, stage == PLD_STAGE_SOLIDS ? "gl/exact_solids.frag" : "gl/exact_fold.frag", defines);
+    failure =
+        folds_[stage].build(gl, stage == PLD_STAGE_SOLIDS ? "gl/exact_solids.frag" : "gl/exact_fold.frag", defines);
   }
   return failure;
 }
@@ -68,8 +76,11 @@ pld_status pld_pass::makeLists(int width, int height) {
   gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
   const uint64_t largest = linkBytes > recordBytes ? linkBytes : recordBytes;
   if (room > kMostFragments || largest > static_cast<uint64_t>(most))
-    return fail(PLD_ERROR_MEMORY, "pld_resize: fragments_per_pixel %g of %dx%d: found a storage block of %llu bytes, this device has at most %lld",
-                static_cast<double>(info_.fragments_per_pixel), width, height, static_cast<unsigned long long>(largest), static_cast<long long>(most));
+    return fail(PLD_ERROR_MEMORY,
+                "pld_resize: fragments_per_pixel %g of %dx%d: found a storage block of %llu bytes, this device has at "
+                "most %lld",
+                static_cast<double>(info_.fragments_per_pixel), width, height, static_cast<unsigned long long>(largest),
+                static_cast<long long>(most));
   gl.GenBuffers(listBlocks(), lists_);
   for (int i = 0; i < listBlocks(); ++i) {
     const uint64_t bytes = i == 0 ? linkBytes : recordBytes;
@@ -121,7 +132,8 @@ pld_status pld_pass::foldLists() {
   if (came > fragments_) fragments_ = came;
   if (came <= room_) return PLD_OK;
   const double pixels = static_cast<double>(width_) * static_cast<double>(height_);
-  return fail(PLD_ERROR_MEMORY, "pld_end: %u fragments came, %llu fit: fragments_per_pixel is %g, expected %.2f, or less geometry", came,
+  return fail(PLD_ERROR_MEMORY,
+              "pld_end: %u fragments came, %llu fit: fragments_per_pixel is %g, expected %.2f, or less geometry", came,
               static_cast<unsigned long long>(room_), static_cast<double>(info_.fragments_per_pixel),
               std::ceil(100.0 * static_cast<double>(came) / pixels) / 100.0);
 }

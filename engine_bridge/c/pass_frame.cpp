@@ -16,8 +16,9 @@ bool isPositive(float x) {
 }
 
 constexpr uint32_t kEveryField = PLD_FIXED_UNITS | PLD_FIXED_EXPOSURE | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION |
-                                  PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
-constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims", "pellucid low resolution"};
+                                 PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
+constexpr const char* kStageNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims",
+                                       "pellucid low resolution"};
 
 }  // namespace
 
@@ -26,7 +27,8 @@ pld_status pld_pass::checkOrder(pld_stage stage) {
   if (step_ == Step::sizeless) return fail(PLD_ERROR_ORDER, "pld_begin: before pld_resize");
   if (step_ == Step::open) return fail(PLD_ERROR_ORDER, "pld_begin: the last stage has not met its pld_end");
   if (stage < PLD_STAGE_SOLIDS || stage > PLD_STAGE_LOW)
-    return fail(PLD_ERROR_ARGUMENT, "pld_begin: found stage %d, which pld_stage does not have", static_cast<int>(stage));
+    return fail(PLD_ERROR_ARGUMENT, "pld_begin: found stage %d, which pld_stage does not have",
+                static_cast<int>(stage));
   const uint32_t needed = stagesNeeded(), bit = 1u << stage;
   if (!(needed & bit)) return fail(PLD_ERROR_ORDER, "pld_begin: this pass has no stage %d", static_cast<int>(stage));
   const uint32_t before = needed & (bit - 1);
@@ -44,9 +46,11 @@ pld_status pld_pass::checkNumbers(const char* call, const pld_frame& frame, uint
     return fail(PLD_ERROR_SIZE, "%s: frame: found %dx%d, expected at least 1x1", call, frame.width, frame.height);
   if (has(PLD_FIXED_PROJECTION) || has(PLD_FIXED_LENS)) {
     for (const float x : frame.projection)
-      if (!std::isfinite(x)) return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection holds a number that is not finite", call);
+      if (!std::isfinite(x))
+        return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection holds a number that is not finite", call);
     if (!isPerspective(frame.projection) && !isOrthographic(frame.projection))
-      return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: expected perspective with w = -z, or orthographic, by columns", call);
+      return fail(PLD_ERROR_ARGUMENT,
+                  "%s: frame.projection: expected perspective with w = -z, or orthographic, by columns", call);
     if (frame.projection[0] == 0.0f || frame.projection[5] == 0.0f)
       return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: a focal length of 0", call);
   }
@@ -59,16 +63,18 @@ pld_status pld_pass::checkNumbers(const char* call, const pld_frame& frame, uint
     return fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: a focal length that is not finite in pixels", call);
   if (has(PLD_FIXED_WEIGHT) && (!isPositive(frame.weight_near) || !(frame.weight_far > frame.weight_near) ||
                                 !std::isfinite(frame.weight_far) || !std::isfinite(frame.weight_exponent)))
-    return fail(PLD_ERROR_ARGUMENT, "%s: weight range %g to %g, exponent %g: expected 0 < near < far and a number", call,
-                static_cast<double>(frame.weight_near), static_cast<double>(frame.weight_far),
+    return fail(PLD_ERROR_ARGUMENT, "%s: weight range %g to %g, exponent %g: expected 0 < near < far and a number",
+                call, static_cast<double>(frame.weight_near), static_cast<double>(frame.weight_far),
                 static_cast<double>(frame.weight_exponent));
   if (has(PLD_FIXED_REFRACTION) && (frame.refract < PLD_REFRACT_NOTHING || frame.refract > PLD_REFRACT_THROUGH_SLAB))
-    return fail(PLD_ERROR_ARGUMENT, "%s: found refract %d, which pld_refract does not have", call, static_cast<int>(frame.refract));
+    return fail(PLD_ERROR_ARGUMENT, "%s: found refract %d, which pld_refract does not have", call,
+                static_cast<int>(frame.refract));
   if (!permutation_.scatters()) return PLD_OK;
   if ((has(PLD_FIXED_REFRACTION) && !isPositive(frame.refract_distance)) ||
       (has(PLD_FIXED_DIFFUSION) &&
        (!(frame.diffusion_k0 >= 0.0f) || !std::isfinite(frame.diffusion_k0) || !isPositive(frame.diffusion_k1))))
-    return fail(PLD_ERROR_ARGUMENT, "%s: refract_distance %g, diffusion_k0 %g, diffusion_k1 %g: expected > 0, >= 0, > 0", call,
+    return fail(PLD_ERROR_ARGUMENT,
+                "%s: refract_distance %g, diffusion_k0 %g, diffusion_k1 %g: expected > 0, >= 0, > 0", call,
                 static_cast<double>(frame.refract_distance), static_cast<double>(frame.diffusion_k0),
                 static_cast<double>(frame.diffusion_k1));
   return PLD_OK;
@@ -87,13 +93,16 @@ const char* pld_pass::changedField(const pld_frame& frame) const {
   if (has(PLD_FIXED_REFRACTION) && frame.refract_distance != fixed.refract_distance) return "refract_distance";
   if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k0 != fixed.diffusion_k0) return "diffusion_k0";
   if (has(PLD_FIXED_DIFFUSION) && frame.diffusion_k1 != fixed.diffusion_k1) return "diffusion_k1";
-  if (has(PLD_FIXED_PROJECTION) && isOrthographic(frame.projection) != isOrthographic(fixed.projection)) return "projection";
-  if (has(PLD_FIXED_LENS) && (focalOf(frame, 1).x != focalOf(fixed, 1).x || focalOf(frame, 1).y != focalOf(fixed, 1).y)) return "projection or size";
+  if (has(PLD_FIXED_PROJECTION) && isOrthographic(frame.projection) != isOrthographic(fixed.projection))
+    return "projection";
+  if (has(PLD_FIXED_LENS) && (focalOf(frame, 1).x != focalOf(fixed, 1).x || focalOf(frame, 1).y != focalOf(fixed, 1).y))
+    return "projection or size";
   return nullptr;
 }
 
 pld_status pld_pass::fix(const pld_frame& frame, uint32_t fields) {
-  if (fields & ~kEveryField) return fail(PLD_ERROR_ARGUMENT, "pld_fix: fields hold a bit that this version does not have: 0x%x", fields);
+  if (fields & ~kEveryField)
+    return fail(PLD_ERROR_ARGUMENT, "pld_fix: fields hold a bit that this version does not have: 0x%x", fields);
   for (const std::string& text : seams_)
     if (!text.empty()) return fail(PLD_ERROR_ORDER, "pld_fix: after pld_glsl, whose text it changes");
   if (const pld_status status = checkNumbers("pld_fix", frame, fields); status != PLD_OK) return status;
@@ -110,37 +119,47 @@ pld_status pld_pass::checkFrame(const pld_frame& frame, bool isFirst, GLenum& at
   if (const char* field = changedField(frame))
     return fail(PLD_ERROR_ARGUMENT, "pld_begin: frame.%s: found another than pld_fix() fixed", field);
   if (frame.colour_texture == frame.depth_texture)
-    return fail(PLD_ERROR_TEXTURE, "pld_begin: colour_texture and depth_texture are one texture, %u", frame.depth_texture);
+    return fail(PLD_ERROR_TEXTURE, "pld_begin: colour_texture and depth_texture are one texture, %u",
+                frame.depth_texture);
 
   TextureFacts colour, depth;
   if (!factsOf(gl, frame.colour_texture, colour))
-    return fail(PLD_ERROR_TEXTURE, "pld_begin: colour_texture %u is no 2D texture of this context", frame.colour_texture);
+    return fail(PLD_ERROR_TEXTURE, "pld_begin: colour_texture %u is no 2D texture of this context",
+                frame.colour_texture);
   if (!factsOf(gl, frame.depth_texture, depth))
     return fail(PLD_ERROR_TEXTURE, "pld_begin: depth_texture %u is no 2D texture of this context", frame.depth_texture);
   if (!isColour(colour.format))
-    return fail(PLD_ERROR_FORMAT, "pld_begin: colour_texture has format 0x%x, expected RGB or RGBA", static_cast<unsigned>(colour.format));
+    return fail(PLD_ERROR_FORMAT, "pld_begin: colour_texture has format 0x%x, expected RGB or RGBA",
+                static_cast<unsigned>(colour.format));
   attachment = permutation_.depth == PLD_DEPTH_LINEAR ? 0 : depthAttachment(depth.format);
   if (permutation_.depth == PLD_DEPTH_LINEAR ? !isLinearDepth(depth.format) : attachment == 0)
-    return fail(PLD_ERROR_FORMAT, "pld_begin: depth_texture has format 0x%x, expected %s", static_cast<unsigned>(depth.format),
+    return fail(PLD_ERROR_FORMAT, "pld_begin: depth_texture has format 0x%x, expected %s",
+                static_cast<unsigned>(depth.format),
                 permutation_.depth == PLD_DEPTH_LINEAR ? "a float colour format" : "a depth format");
   if (permutation_.low() && frame.low_factor != 2 && frame.low_factor != 4 && frame.low_factor != 8)
     return fail(PLD_ERROR_ARGUMENT, "pld_begin: low_factor: found %d, expected 2, 4 or 8", frame.low_factor);
   if (permutation_.low() && (frame.width % frame.low_factor != 0 || frame.height % frame.low_factor != 0))
-    return fail(PLD_ERROR_SIZE, "pld_begin: frame: found %dx%d, expected multiples of low_factor %d", frame.width, frame.height, frame.low_factor);
+    return fail(PLD_ERROR_SIZE, "pld_begin: frame: found %dx%d, expected multiples of low_factor %d", frame.width,
+                frame.height, frame.low_factor);
   if (permutation_.rims()) {
     TextureFacts open;
     if (!factsOf(gl, frame.occlusion_texture, open))
-      return fail(PLD_ERROR_TEXTURE, "pld_begin: occlusion_texture %u is no 2D texture of this context", frame.occlusion_texture);
+      return fail(PLD_ERROR_TEXTURE, "pld_begin: occlusion_texture %u is no 2D texture of this context",
+                  frame.occlusion_texture);
     if (!isOcclusion(open.format))
-      return fail(PLD_ERROR_FORMAT, "pld_begin: occlusion_texture has format 0x%x, expected numbers in red", static_cast<unsigned>(open.format));
+      return fail(PLD_ERROR_FORMAT, "pld_begin: occlusion_texture has format 0x%x, expected numbers in red",
+                  static_cast<unsigned>(open.format));
     if (open.width < frame.width || open.height < frame.height)
-      return fail(PLD_ERROR_SIZE, "pld_begin: occlusion_texture is %dx%d, expected at least the frame's %dx%d", open.width, open.height,
-                  frame.width, frame.height);
+      return fail(PLD_ERROR_SIZE, "pld_begin: occlusion_texture is %dx%d, expected at least the frame's %dx%d",
+                  open.width, open.height, frame.width, frame.height);
     if (frame.occlusion < PLD_OCCLUSION_RELATIVE || frame.occlusion > PLD_OCCLUSION_PUBLISHED)
-      return fail(PLD_ERROR_ARGUMENT, "pld_begin: found occlusion %d, which pld_occlusion does not have", static_cast<int>(frame.occlusion));
+      return fail(PLD_ERROR_ARGUMENT, "pld_begin: found occlusion %d, which pld_occlusion does not have",
+                  static_cast<int>(frame.occlusion));
   }
-  if (colour.width < frame.width || colour.height < frame.height || depth.width < frame.width || depth.height < frame.height)
-    return fail(PLD_ERROR_SIZE, "pld_begin: colour_texture %dx%d, depth_texture %dx%d: expected at least the frame's %dx%d",
+  if (colour.width < frame.width || colour.height < frame.height || depth.width < frame.width ||
+      depth.height < frame.height)
+    return fail(PLD_ERROR_SIZE,
+                "pld_begin: colour_texture %dx%d, depth_texture %dx%d: expected at least the frame's %dx%d",
                 colour.width, colour.height, depth.width, depth.height, frame.width, frame.height);
   if (!isFirst && (frame.width != frame_.width || frame.height != frame_.height))
     return fail(PLD_ERROR_SIZE, "pld_begin: found %dx%d, expected the %dx%d of this frame's first stage", frame.width,
@@ -198,9 +217,11 @@ void pld_pass::drawEmptyPlanes(const pld_frame& frame) {
 // The bound framebuffer's planes, empty.
 void pld_pass::clearStage(pld_stage stage) {
   constexpr float far = std::numeric_limits<float>::infinity();
-  const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f, none[4] = {0, 0, 0, 0};
+  const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f,
+                none[4] = {0, 0, 0, 0};
   if ((stage == PLD_STAGE_LAYERS && !emptyPlanes_.name) || stage == PLD_STAGE_LOW)
-    for (const Plane& plane : stage == PLD_STAGE_LOW ? low_ : planes_) gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
+    for (const Plane& plane : stage == PLD_STAGE_LOW ? low_ : planes_)
+      gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
   if (stage == PLD_STAGE_FRONT) gl.ClearBufferfv(GL_COLOR, 0, nowhere);
   for (GLint i = 0; stage == PLD_STAGE_RIMS && i < kRimPlanes; ++i) gl.ClearBufferfv(GL_COLOR, i, none);
   if (stage == PLD_STAGE_SOLIDS) {
@@ -249,7 +270,10 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
   // resolution resolved from eleven.
   const auto seamUnit = static_cast<int>(info_.texture_unit);
   if (saves)
-    saved_.save(gl, {0, std::max(seamUnit + permutation_.seamUnits(), stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 11 : 0)},
+    saved_.save(gl,
+                {0, std::max(seamUnit + permutation_.seamUnits(), stage == PLD_STAGE_RIMS  ? 6
+                                                                  : stage == PLD_STAGE_LOW ? 11
+                                                                                           : 0)},
                 static_cast<int>(info_.uniform_binding), storageOf());
   const GLuint target = frameOf(stage);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
@@ -309,7 +333,8 @@ GLuint pld_pass::frameOf(pld_stage stage) const {
 pld_status pld_pass::darkenRims() {
   TextureFacts facts;
   if (!factsOf(gl, frame_.occlusion_texture, facts) || facts.width < frame_.width || facts.height < frame_.height)
-    return fail(PLD_ERROR_TEXTURE, "pld_end: occlusion_texture %u is no longer what pld_begin saw", frame_.occlusion_texture);
+    return fail(PLD_ERROR_TEXTURE, "pld_end: occlusion_texture %u is no longer what pld_begin saw",
+                frame_.occlusion_texture);
   setPlainDrawing(gl, frame_.width, frame_.height);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, layersFrame_);
   for (GLuint i = 0; i < kDrawBuffers; ++i) {
@@ -373,8 +398,11 @@ pld_status pld_pass::resolve(const pld_target& target) {
   if (const pld_status status = checkView(target); status != PLD_OK) return status;
   TextureFacts colour;
   if (!factsOf(gl, frame_.colour_texture, colour) || colour.width < frame_.width || colour.height < frame_.height)
-    return fail(PLD_ERROR_TEXTURE, "pld_resolve: colour_texture %u is no longer what pld_begin saw", frame_.colour_texture);
-  if (const pld_status status = checkTarget(target, frame_.width, frame_.height, frame_.colour_texture); status != PLD_OK) return status;
+    return fail(PLD_ERROR_TEXTURE, "pld_resolve: colour_texture %u is no longer what pld_begin saw",
+                frame_.colour_texture);
+  if (const pld_status status = checkTarget(target, frame_.width, frame_.height, frame_.colour_texture);
+      status != PLD_OK)
+    return status;
 
   const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
   if (saves) saved_.save(gl, unitsOf(), -1);

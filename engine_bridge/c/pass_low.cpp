@@ -46,7 +46,9 @@ bool pld_pass::makeLowTextures(int width, int height) {
     gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
   };
   bool complete = true;
-  const auto check = [&] { complete = complete && gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; };
+  const auto check = [&] {
+    complete = complete && gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  };
   lowFarZ_ = makeTexture(GL_R32F, wide, high, 32);
   attach(lowDepthFrame_, GL_COLOR_ATTACHMENT0, lowFarZ_);
   check();
@@ -122,7 +124,8 @@ void pld_pass::addLow() {
   if (solid_) bind(4, solid_);
   constexpr GLuint scatterUnits[] = {6, 7, 5, 8};  // of the planes of targets 4 to 7
   for (const Plane& plane : low_)
-    if (plane.spec.attachment >= 4 && permutation_.scatters()) bind(scatterUnits[plane.spec.attachment - 4], plane.texture);
+    if (plane.spec.attachment >= 4 && permutation_.scatters())
+      bind(scatterUnits[plane.spec.attachment - 4], plane.texture);
   useProgram(upsample_);
   gl.Uniform1f(upsample_.place(gl, "factor"), static_cast<float>(frame_.low_factor));
   gl.Uniform2i(upsample_.place(gl, "texelCount"), wide, high);

@@ -1,4 +1,5 @@
-// Shadow maps of transparent casters: the host draws what a light sees, this library filters it and keeps it for lookups.
+// Shadow maps of transparent casters: the host draws what a light sees, this library filters it and keeps it for
+// lookups.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -61,16 +62,21 @@ int pld_pass::shadowEdge() const {
 
 pld_status pld_pass::checkShadowInfo(const pld_shadow_info& info) {
   if (info.struct_size != sizeof(pld_shadow_info))
-    return fail(PLD_ERROR_VERSION, "pld_shadow_resize: info.struct_size: found %u, expected %zu", info.struct_size, sizeof(pld_shadow_info));
+    return fail(PLD_ERROR_VERSION, "pld_shadow_resize: info.struct_size: found %u, expected %zu", info.struct_size,
+                sizeof(pld_shadow_info));
   if (info.form < PLD_SHADOW_VARIANCE || info.form > PLD_SHADOW_CORRECTED)
-    return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: found form %d, which pld_shadow_form does not have", static_cast<int>(info.form));
+    return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: found form %d, which pld_shadow_form does not have",
+                static_cast<int>(info.form));
   const struct {
     const char* name;
     int value, least, most;
-  } ranges[] = {{"lights", info.lights, 1, kMostLights}, {"faces", info.faces, 1, kMostFaces}, {"closer_edge", info.closer_edge, 1, kMostCloser}};
+  } ranges[] = {{"lights", info.lights, 1, kMostLights},
+                {"faces", info.faces, 1, kMostFaces},
+                {"closer_edge", info.closer_edge, 1, kMostCloser}};
   for (const auto& range : ranges)
     if (range.value < range.least || range.value > range.most)
-      return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: %s: found %d, expected %d to %d", range.name, range.value, range.least, range.most);
+      return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: %s: found %d, expected %d to %d", range.name, range.value,
+                  range.least, range.most);
   GLint most = 0, layers = 0, bindings = 0, units = 0;
   gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
@@ -81,17 +87,23 @@ pld_status pld_pass::checkShadowInfo(const pld_shadow_info& info) {
     return fail(PLD_ERROR_SIZE, "pld_shadow_resize: size: found %d, expected a multiple of %d from 16 to %d", info.size,
                 shading::PLD_SHADOW_DIVIDE, most);
   if (info.faces * (info.coloured ? 3 : 1) > layers)
-    return fail(PLD_ERROR_SIZE, "pld_shadow_resize: %d faces: this device's textures have %d layers", info.faces, layers);
+    return fail(PLD_ERROR_SIZE, "pld_shadow_resize: %d faces: this device's textures have %d layers", info.faces,
+                layers);
   if (info.uniform_binding >= static_cast<uint32_t>(bindings) || info.texture_unit >= static_cast<uint32_t>(units))
-    return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: uniform_binding %u, texture_unit %u: the device has %d bindings, %d units",
+    return fail(PLD_ERROR_ARGUMENT,
+                "pld_shadow_resize: uniform_binding %u, texture_unit %u: the device has %d bindings, %d units",
                 info.uniform_binding, info.texture_unit, bindings, units);
-  if (info.uniform_binding == info_.uniform_binding || info.texture_unit - info_.texture_unit < static_cast<uint32_t>(permutation_.seamUnits()))
-    return fail(PLD_ERROR_ARGUMENT, "pld_shadow_resize: uniform_binding %u, texture_unit %u: expected others than the seam's, %u and %u to %u",
-                info.uniform_binding, info.texture_unit, info_.uniform_binding, info_.texture_unit,
-                info_.texture_unit + static_cast<uint32_t>(permutation_.seamUnits()) - 1);
+  if (info.uniform_binding == info_.uniform_binding ||
+      info.texture_unit - info_.texture_unit < static_cast<uint32_t>(permutation_.seamUnits()))
+    return fail(
+        PLD_ERROR_ARGUMENT,
+        "pld_shadow_resize: uniform_binding %u, texture_unit %u: expected others than the seam's, %u and %u to %u",
+        info.uniform_binding, info.texture_unit, info_.uniform_binding, info_.texture_unit,
+        info_.texture_unit + static_cast<uint32_t>(permutation_.seamUnits()) - 1);
   const int edge = info.form <= PLD_SHADOW_PUBLISHED ? info.size / shading::PLD_SHADOW_DIVIDE : info.size;
   if (static_cast<int64_t>(edge) * edge * info.faces * (info.coloured ? 3 : 1) > INT32_MAX)
-    return fail(PLD_ERROR_SIZE, "pld_shadow_resize: %d faces of %d x %d texels: more than 2^31 - 1 together", info.faces, edge, edge);
+    return fail(PLD_ERROR_SIZE, "pld_shadow_resize: %d faces of %d x %d texels: more than 2^31 - 1 together",
+                info.faces, edge, edge);
   return PLD_OK;
 }
 
@@ -130,7 +142,8 @@ pld_status pld_pass::makeShadows() {
   };
   std::string failure = build(shadowTexels_, shadowIsFiltered() ? "FILTER 1" : "FILTER 0");
   if (failure.empty() && shadowIsFiltered()) failure = build(shadowDown_, "FILTER 2");
-  if (failure.empty() && (info_.flags & PLD_FLAG_DEBUG_VIEWS)) failure = viewShadow_.build(gl, "gl/view_shadow.frag", {});
+  if (failure.empty() && (info_.flags & PLD_FLAG_DEBUG_VIEWS))
+    failure = viewShadow_.build(gl, "gl/view_shadow.frag", {});
   if (!failure.empty()) return fail(PLD_ERROR_INTERNAL, "%s", failure.c_str());
 
   const uint64_t before = bytes_;
@@ -207,7 +220,8 @@ pld_status pld_pass::shadowResize(const pld_shadow_info* info) {
   state.restore(gl);
   while (const GLenum error = gl.GetError()) {
     if (error == GL_OUT_OF_MEMORY)
-      status = fail(PLD_ERROR_MEMORY, "pld_shadow_resize: the GL device has no room for %d faces of %d texels", info->faces, info->size);
+      status = fail(PLD_ERROR_MEMORY, "pld_shadow_resize: the GL device has no room for %d faces of %d texels",
+                    info->faces, info->size);
     else if (status == PLD_OK)
       status = fail(PLD_ERROR_INTERNAL, "pld_shadow_resize: GL error 0x%x", error);
   }
@@ -218,33 +232,39 @@ pld_status pld_pass::shadowResize(const pld_shadow_info* info) {
 pld_status pld_pass::checkShadowView(const pld_shadow_view& view, GLenum& attachment) {
   const char* const call = "pld_shadow_begin";
   if (view.struct_size != sizeof(pld_shadow_view))
-    return fail(PLD_ERROR_VERSION, "%s: view.struct_size: found %u, expected %zu", call, view.struct_size, sizeof(pld_shadow_view));
+    return fail(PLD_ERROR_VERSION, "%s: view.struct_size: found %u, expected %zu", call, view.struct_size,
+                sizeof(pld_shadow_view));
   const bool local = view.kind == PLD_LIGHT_LOCAL;
   if (!local && view.kind != PLD_LIGHT_DIRECTIONAL)
-    return fail(PLD_ERROR_ARGUMENT, "%s: found kind %d, which pld_light does not have", call, static_cast<int>(view.kind));
+    return fail(PLD_ERROR_ARGUMENT, "%s: found kind %d, which pld_light does not have", call,
+                static_cast<int>(view.kind));
   if (view.light < 0 || view.light >= shadowInfo_.lights)
     return fail(PLD_ERROR_ARGUMENT, "%s: light: found %d, expected 0 to %d", call, view.light, shadowInfo_.lights - 1);
   if (view.faces != 1 && !(view.faces == 6 && local))
     return fail(PLD_ERROR_ARGUMENT, "%s: faces: found %d, expected 1, or 6 of a local light", call, view.faces);
-  if (view.first_face < 0 || view.first_face > shadowInfo_.faces - view.faces || view.face < 0 || view.face >= view.faces)
-    return fail(PLD_ERROR_ARGUMENT, "%s: face %d of %d from %d on: there is room for %d", call, view.face, view.faces, view.first_face,
-                shadowInfo_.faces);
+  if (view.first_face < 0 || view.first_face > shadowInfo_.faces - view.faces || view.face < 0 ||
+      view.face >= view.faces)
+    return fail(PLD_ERROR_ARGUMENT, "%s: face %d of %d from %d on: there is room for %d", call, view.face, view.faces,
+                view.first_face, shadowInfo_.faces);
   if (!isFinite(view.light_from_scene) || !isRigid(view.light_from_scene))
     return fail(PLD_ERROR_ARGUMENT, "%s: light_from_scene: expected a turn and a shift, by columns", call);
   const float* p = view.projection;
   const bool perspective = p[3] == 0.0f && p[7] == 0.0f && p[11] == -1.0f && p[15] == 0.0f;
   const bool orthographic = p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
   if (!isFinite(p) || (local ? !perspective : !orthographic))
-    return fail(PLD_ERROR_ARGUMENT, "%s: projection: expected %s, by columns", call, local ? "perspective with w = -z" : "orthographic");
+    return fail(PLD_ERROR_ARGUMENT, "%s: projection: expected %s, by columns", call,
+                local ? "perspective with w = -z" : "orthographic");
   if (p[0] == 0.0f || p[5] == 0.0f) return fail(PLD_ERROR_ARGUMENT, "%s: projection: a focal length of 0", call);
   const float focal = std::fabs(p[0]);
   if (view.faces == 6 && (std::fabs(p[5]) != focal || p[8] != 0.0f || p[9] != 0.0f || !(focal > 0.5f && focal < 1.0f)))
-    return fail(PLD_ERROR_ARGUMENT, "%s: projection of a cube's face: found focal lengths %g, %g, expected both the same, over .5 and below 1",
-                call, static_cast<double>(p[0]), static_cast<double>(p[5]));
+    return fail(
+        PLD_ERROR_ARGUMENT,
+        "%s: projection of a cube's face: found focal lengths %g, %g, expected both the same, over .5 and below 1",
+        call, static_cast<double>(p[0]), static_cast<double>(p[5]));
   if (!std::isfinite(view.near_depth) || !std::isfinite(view.far_depth) ||
       !(local ? view.far_depth > 0.0f : view.far_depth > view.near_depth))
-    return fail(PLD_ERROR_ARGUMENT, "%s: near_depth %g, far_depth %g: expected near < far, of a local light far > 0", call,
-                static_cast<double>(view.near_depth), static_cast<double>(view.far_depth));
+    return fail(PLD_ERROR_ARGUMENT, "%s: near_depth %g, far_depth %g: expected near < far, of a local light far > 0",
+                call, static_cast<double>(view.near_depth), static_cast<double>(view.far_depth));
   attachment = 0;
   if (view.depth_texture == 0) return PLD_OK;
   TextureFacts depth;
@@ -252,7 +272,8 @@ pld_status pld_pass::checkShadowView(const pld_shadow_view& view, GLenum& attach
     return fail(PLD_ERROR_TEXTURE, "%s: depth_texture %u is no 2D texture of this context", call, view.depth_texture);
   attachment = depthAttachment(depth.format);
   if (attachment == 0)
-    return fail(PLD_ERROR_FORMAT, "%s: depth_texture has format 0x%x, expected a depth format", call, static_cast<unsigned>(depth.format));
+    return fail(PLD_ERROR_FORMAT, "%s: depth_texture has format 0x%x, expected a depth format", call,
+                static_cast<unsigned>(depth.format));
   if (depth.width < shadowInfo_.size || depth.height < shadowInfo_.size)
     return fail(PLD_ERROR_SIZE, "%s: depth_texture is %dx%d, expected at least %dx%d", call, depth.width, depth.height,
                 shadowInfo_.size, shadowInfo_.size);
@@ -273,15 +294,16 @@ pld_status pld_pass::shadowBegin(const pld_shadow_view& view) {
     if (gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
       gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, attachment, GL_TEXTURE_2D, 0, 0);
       if (saves) saved_.restore(gl);
-      return fail(PLD_ERROR_FORMAT, "pld_shadow_begin: this device cannot test against depth_texture %u", view.depth_texture);
+      return fail(PLD_ERROR_FORMAT, "pld_shadow_begin: this device cannot test against depth_texture %u",
+                  view.depth_texture);
     }
   }
   pushGroup("pellucid shadow");
   timers_.beginFace(gl);
   const bool naive = shadowInfo_.form == PLD_SHADOW_NAIVE || shadowInfo_.form == PLD_SHADOW_PUBLISHED;
   const glm::dvec2 metric = metricOf(view);
-  GLfloat block[8] = {static_cast<float>(metric.x), static_cast<float>(metric.y), view.kind == PLD_LIGHT_LOCAL ? 1.0f : 0.0f,
-                      naive ? 1.0f : 0.0f};
+  GLfloat block[8] = {static_cast<float>(metric.x), static_cast<float>(metric.y),
+                      view.kind == PLD_LIGHT_LOCAL ? 1.0f : 0.0f, naive ? 1.0f : 0.0f};
   const uint32_t seed = shading::mapSeedOf(shadowInfo_.seed, static_cast<uint32_t>(view.light),
                                            static_cast<uint32_t>(view.first_face + view.face));
   std::memcpy(&block[4], &seed, sizeof(seed));
@@ -315,8 +337,9 @@ void pld_pass::setShadowTable(const pld_shadow_view& view) {
   const int edge = shadowEdge(), channels = shadowChannels(), slot = view.first_face + view.face;
   const glm::dmat4 lightFromScene = matrixOf(view.light_from_scene), projection = matrixOf(view.projection);
   const double focal = std::min(std::fabs(projection[0][0]), std::fabs(projection[1][1]));
-  shading::ShadowFace face = shading::shadowFaceOf(projection * lightFromScene, shadowInfo_.size, shading::shadowGrid(shadowIsFiltered()),
-                                                   shadowRows_, view.faces == 1 ? 0.0 : 0.5 * (1.0 - focal));
+  shading::ShadowFace face =
+      shading::shadowFaceOf(projection * lightFromScene, shadowInfo_.size, shading::shadowGrid(shadowIsFiltered()),
+                            shadowRows_, view.faces == 1 ? 0.0 : 0.5 * (1.0 - focal));
   face.extent.x = slot * edge * edge * channels;
   face.extent.z = channels;
 
@@ -341,8 +364,10 @@ void pld_pass::setShadowTable(const pld_shadow_view& view) {
   }
   gl.BindBuffer(GL_UNIFORM_BUFFER, shadowTable_);
   gl.BufferSubData(GL_UNIFORM_BUFFER, static_cast<GLintptr>(sizeof(light)) * view.light, sizeof(light), &light);
-  gl.BufferSubData(GL_UNIFORM_BUFFER, static_cast<GLintptr>(sizeof(light)) * shadowInfo_.lights + static_cast<GLintptr>(sizeof(face)) * slot,
-                   sizeof(face), &face);
+  gl.BufferSubData(
+      GL_UNIFORM_BUFFER,
+      static_cast<GLintptr>(sizeof(light)) * shadowInfo_.lights + static_cast<GLintptr>(sizeof(face)) * slot,
+      sizeof(face), &face);
 }
 
 void pld_pass::filterShadow(int face) {
@@ -358,7 +383,8 @@ void pld_pass::filterShadow(int face) {
   }
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, mapFrame_);
   for (int c = 0; c < channels; ++c)
-    gl.FramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(c), shadowMaps_, 0, face * channels + c);
+    gl.FramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(c), shadowMaps_, 0,
+                               face * channels + c);
   setViewportTo(gl, 0, 0, edge, edge);
   useProgram(shadowIsFiltered() ? shadowDown_ : shadowTexels_);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
@@ -372,7 +398,8 @@ pld_status pld_pass::shadowEnd() {
   }
   filterShadow(shadowView_.first_face + shadowView_.face);
   setShadowTable(shadowView_);
-  shadowFaces_[shadowView_.first_face + shadowView_.face] = shadowView_.kind == PLD_LIGHT_LOCAL ? FaceKind::local : FaceKind::directional;
+  shadowFaces_[shadowView_.first_face + shadowView_.face] =
+      shadowView_.kind == PLD_LIGHT_LOCAL ? FaceKind::local : FaceKind::directional;
   timers_.endFace(gl);
   if (!(info_.flags & PLD_FLAG_HOST_RESTORES)) saved_.restore(gl);
   popGroup();
@@ -382,14 +409,16 @@ pld_status pld_pass::shadowEnd() {
 
 pld_status pld_pass::shadowText(pld_shadow_text which, int version, const char*& text) {
   if (which != PLD_SHADOW_TEXT_CASTER && which != PLD_SHADOW_TEXT_LOOKUP)
-    return fail(PLD_ERROR_ARGUMENT, "pld_shadow_glsl: found text %d, which pld_shadow_text does not have", static_cast<int>(which));
+    return fail(PLD_ERROR_ARGUMENT, "pld_shadow_glsl: found text %d, which pld_shadow_text does not have",
+                static_cast<int>(which));
   if (!shadowMaps_) return fail(PLD_ERROR_ORDER, "pld_shadow_glsl: before pld_shadow_resize");
   if (const pld_status status = checkGlsl("pld_shadow_glsl", version); status != PLD_OK) return status;
   std::string& kept = shadowTexts_[which];
   kept = which == PLD_SHADOW_TEXT_CASTER
              ? casterText(shadowInfo_.coloured != 0, version, {static_cast<int>(info_.uniform_binding), 0})
-             : pellucid::c::shadowText({shadowInfo_.lights, shadowInfo_.faces, shadowEdge(), shadowChannels()}, version,
-                          {static_cast<int>(shadowInfo_.uniform_binding), static_cast<int>(shadowInfo_.texture_unit)});
+             : pellucid::c::shadowText(
+                   {shadowInfo_.lights, shadowInfo_.faces, shadowEdge(), shadowChannels()}, version,
+                   {static_cast<int>(shadowInfo_.uniform_binding), static_cast<int>(shadowInfo_.texture_unit)});
   text = kept.c_str();
   return PLD_OK;
 }

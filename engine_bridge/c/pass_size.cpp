@@ -72,7 +72,9 @@ pld_status pld_pass::makeTextures(int width, int height) {
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, layersFrame_);
   gl.DrawBuffers(kDrawBuffers, buffers);
   bool complete = gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  const auto check = [&] { complete = complete && gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; };
+  const auto check = [&] {
+    complete = complete && gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  };
   if (permutation_.planarDepth()) {
     planarZ_ = makeTexture(GL_R32F, width, height, 32);
     attach(planarFrame_, GL_COLOR_ATTACHMENT0, planarZ_);
@@ -114,7 +116,8 @@ pld_status pld_pass::makeTextures(int width, int height) {
     gl.DrawBuffers(kSpreadPlanes, all);
     check();
   }
-  if (!complete) return fail(PLD_ERROR_UNSUPPORTED, "pld_resize: this device cannot draw to the planes of this tier at once");
+  if (!complete)
+    return fail(PLD_ERROR_UNSUPPORTED, "pld_resize: this device cannot draw to the planes of this tier at once");
   return permutation_.exact() ? makeLists(width, height) : PLD_OK;
 }
 

@@ -36,7 +36,8 @@ std::string pld_pass::buildViewPrograms() {
 
 pld_status pld_pass::checkView(const pld_target& target) {
   if (target.view < PLD_VIEW_PICTURE || target.view > PLD_VIEW_SHADOW_DEPTH)
-    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found view %d, which pld_view does not have", static_cast<int>(target.view));
+    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found view %d, which pld_view does not have",
+                static_cast<int>(target.view));
   if (target.view != PLD_VIEW_PICTURE && !(info_.flags & PLD_FLAG_DEBUG_VIEWS))
     return fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: views need PLD_FLAG_DEBUG_VIEWS");
   const bool rims = isOfRims(target.view);
@@ -44,15 +45,18 @@ pld_status pld_pass::checkView(const pld_target& target) {
     return fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: view %d needs %s", static_cast<int>(target.view),
                 rims ? "PLD_FEATURE_RIMS and a stage of rims" : "PLD_FEATURE_LOW_RESOLUTION");
   TextureFacts open;
-  if (rims && (!factsOf(gl, frame_.occlusion_texture, open) || open.width < frame_.width || open.height < frame_.height))
-    return fail(PLD_ERROR_TEXTURE, "pld_resolve: occlusion_texture %u is no longer what pld_begin saw", frame_.occlusion_texture);
+  if (rims &&
+      (!factsOf(gl, frame_.occlusion_texture, open) || open.width < frame_.width || open.height < frame_.height))
+    return fail(PLD_ERROR_TEXTURE, "pld_resolve: occlusion_texture %u is no longer what pld_begin saw",
+                frame_.occlusion_texture);
   return PLD_OK;
 }
 
 //   source  a texture that is read meanwhile; 0 for none of the host's
 pld_status pld_pass::checkTarget(const pld_target& target, int width, int height, GLuint source) {
   if (target.kind != PLD_TARGET_TEXTURE && target.kind != PLD_TARGET_FRAMEBUFFER)
-    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found kind %d, which pld_target_kind does not have", static_cast<int>(target.kind));
+    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: found kind %d, which pld_target_kind does not have",
+                static_cast<int>(target.kind));
   if (target.kind == PLD_TARGET_FRAMEBUFFER) {
     if (target.name != 0 && !gl.IsFramebuffer(target.name))
       return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is no framebuffer of this context", target.name);
@@ -62,11 +66,14 @@ pld_status pld_pass::checkTarget(const pld_target& target, int width, int height
   if (!factsOf(gl, target.name, facts))
     return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is no 2D texture of this context", target.name);
   if (source && target.name == source)
-    return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is the frame's colour_texture, which is read meanwhile", target.name);
+    return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is the frame's colour_texture, which is read meanwhile",
+                target.name);
   for (const Plane& plane : planes_)
-    if (plane.texture == target.name) return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is a plane of this pass", target.name);
+    if (plane.texture == target.name)
+      return fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is a plane of this pass", target.name);
   if (!isColour(facts.format))
-    return fail(PLD_ERROR_FORMAT, "pld_resolve: target has format 0x%x, expected RGB or RGBA", static_cast<unsigned>(facts.format));
+    return fail(PLD_ERROR_FORMAT, "pld_resolve: target has format 0x%x, expected RGB or RGBA",
+                static_cast<unsigned>(facts.format));
   if (facts.width < width || facts.height < height)
     return fail(PLD_ERROR_SIZE, "pld_resolve: target is %dx%d, expected at least %s %dx%d", facts.width, facts.height,
                 isOfShadows(target.view) ? "a face's" : "the frame's", width, height);
@@ -83,19 +90,23 @@ pld_status pld_pass::bindTarget(const pld_target& target, GLuint source) {
   if (toTexture) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name, 0);
   GLint attached = 0, kind = 0;
   if (!toTexture && target.name != 0) {
-    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
+    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
+                                           GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
     if (kind == GL_TEXTURE)
-      gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &attached);
+      gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
+                                             GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &attached);
   }
   const bool own = source && static_cast<GLuint>(attached) == source;
   if (!own && gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return PLD_OK;
   unbindTarget(target);
-  return own ? fail(PLD_ERROR_TEXTURE, "pld_resolve: framebuffer %u draws to a texture that is read meanwhile", target.name)
+  return own ? fail(PLD_ERROR_TEXTURE, "pld_resolve: framebuffer %u draws to a texture that is read meanwhile",
+                    target.name)
              : fail(PLD_ERROR_FORMAT, "pld_resolve: this device cannot draw to target %u", target.name);
 }
 
 void pld_pass::unbindTarget(const pld_target& target) {
-  if (target.kind == PLD_TARGET_TEXTURE) gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+  if (target.kind == PLD_TARGET_TEXTURE)
+    gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
 }
 
 // Of what the last stages have left, beside the sums that are bound.
@@ -122,8 +133,10 @@ pld_status pld_pass::resolveShadow(const pld_target& target) {
   if (!shadowMaps_) return fail(PLD_ERROR_ORDER, "pld_resolve: a view of shadow maps before pld_shadow_resize");
   const int face = target.shadow_face, edge = shadowEdge();
   if (face < 0 || face >= shadowInfo_.faces)
-    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: shadow_face: found %d, expected 0 to %d", face, shadowInfo_.faces - 1);
-  if (shadowFaces_[face] == FaceKind::empty) return fail(PLD_ERROR_ORDER, "pld_resolve: shadow_face %d has not been drawn", face);
+    return fail(PLD_ERROR_ARGUMENT, "pld_resolve: shadow_face: found %d, expected 0 to %d", face,
+                shadowInfo_.faces - 1);
+  if (shadowFaces_[face] == FaceKind::empty)
+    return fail(PLD_ERROR_ORDER, "pld_resolve: shadow_face %d has not been drawn", face);
   if (const pld_status status = checkTarget(target, edge, edge, 0); status != PLD_OK) return status;
   const bool saves = !(info_.flags & PLD_FLAG_HOST_RESTORES);
   if (saves) saved_.save(gl, {0, 1}, -1);

@@ -60,11 +60,13 @@ pld_status checkInfo(const pld_create_info& info) {
                        {"clip", info.clip, PLD_CLIP_ZERO_TO_ONE},      {"rows", info.rows, PLD_ROWS_DOWN}};
   for (const auto& choice : choices)
     if (choice.value < 0 || choice.value > choice.last) {
-      std::snprintf(text, sizeof(text), "pld_create: %s: found %d, expected 0 to %d", choice.name, choice.value, choice.last);
+      std::snprintf(text, sizeof(text), "pld_create: %s: found %d, expected 0 to %d", choice.name, choice.value,
+                    choice.last);
       return refuse(info, PLD_ERROR_ARGUMENT, text);
     }
   constexpr uint32_t features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
-                                PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION;
+                                PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS |
+                                PLD_FEATURE_LOW_RESOLUTION;
   constexpr uint32_t flags = PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS;
   if ((info.features & ~features) || (info.flags & ~flags))
     return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: features or flags hold a bit that this version does not have");
@@ -74,7 +76,8 @@ pld_status checkInfo(const pld_create_info& info) {
 // Of 0.1 it ended before occlusion_texture.
 pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, pld_frame& whole) {
   if (frame.struct_size != offsetof(pld_frame, occlusion_texture) && frame.struct_size != sizeof(pld_frame))
-    return pass->fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call, frame.struct_size, sizeof(pld_frame));
+    return pass->fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call, frame.struct_size,
+                      sizeof(pld_frame));
   std::memcpy(&whole, &frame, frame.struct_size);
   return PLD_OK;
 }
@@ -82,7 +85,8 @@ pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, 
 // Of 0.3 it ended before shadow_face.
 pld_status wholeTarget(pld_pass* pass, const pld_target& target, pld_target& whole) {
   if (target.struct_size != offsetof(pld_target, shadow_face) && target.struct_size != sizeof(pld_target))
-    return pass->fail(PLD_ERROR_VERSION, "pld_resolve: target.struct_size: found %u, expected %zu", target.struct_size, sizeof(pld_target));
+    return pass->fail(PLD_ERROR_VERSION, "pld_resolve: target.struct_size: found %u, expected %zu", target.struct_size,
+                      sizeof(pld_target));
   std::memcpy(&whole, &target, target.struct_size);
   return PLD_OK;
 }
@@ -190,7 +194,8 @@ pld_status pld_shadow_end(pld_pass* pass) {
 
 pld_status pld_shadow_glsl(pld_pass* pass, pld_shadow_text which, int32_t version, const char** text) {
   return guarded(pass, "pld_shadow_glsl", [&] {
-    return text ? pass->shadowText(which, version, *text) : pass->fail(PLD_ERROR_ARGUMENT, "pld_shadow_glsl: text is null");
+    return text ? pass->shadowText(which, version, *text)
+                : pass->fail(PLD_ERROR_ARGUMENT, "pld_shadow_glsl: text is null");
   });
 }
 
@@ -211,9 +216,10 @@ const char* pld_message(const pld_pass* pass) {
 }
 
 const char* pld_status_name(pld_status status) {
-  static const char* const names[] = {"PLD_OK",          "PLD_ERROR_ARGUMENT",    "PLD_ERROR_VERSION", "PLD_ERROR_ORDER",
-                                      "PLD_ERROR_SIZE",  "PLD_ERROR_TEXTURE",     "PLD_ERROR_FORMAT",  "PLD_ERROR_CONTEXT",
-                                      "PLD_ERROR_UNSUPPORTED", "PLD_ERROR_MEMORY", "PLD_ERROR_BUSY",   "PLD_ERROR_INTERNAL"};
+  static const char* const names[] = {"PLD_OK",           "PLD_ERROR_ARGUMENT", "PLD_ERROR_VERSION",
+                                      "PLD_ERROR_ORDER",  "PLD_ERROR_SIZE",     "PLD_ERROR_TEXTURE",
+                                      "PLD_ERROR_FORMAT", "PLD_ERROR_CONTEXT",  "PLD_ERROR_UNSUPPORTED",
+                                      "PLD_ERROR_MEMORY", "PLD_ERROR_BUSY",     "PLD_ERROR_INTERNAL"};
   return status >= PLD_OK && status <= PLD_ERROR_INTERNAL ? names[status] : "no pld_status";
 }
 

@@ -19,7 +19,8 @@ void defineFixed(const Permutation& p, pld_stage stage, std::vector<std::string>
   const auto has = [&](pld_fixed field) { return (p.fixedFields & static_cast<uint32_t>(field)) != 0; };
   if (has(PLD_FIXED_UNITS)) defines.push_back(literal("UNITS", frame.metres_per_unit));
   if (has(PLD_FIXED_EXPOSURE)) defines.push_back(literal("EXPOSURE", frame.pre_exposure));
-  if (has(PLD_FIXED_PROJECTION)) defines.emplace_back(isOrthographic(frame.projection) ? "ORTHOGRAPHIC 1" : "ORTHOGRAPHIC 0");
+  if (has(PLD_FIXED_PROJECTION))
+    defines.emplace_back(isOrthographic(frame.projection) ? "ORTHOGRAPHIC 1" : "ORTHOGRAPHIC 0");
   if (has(PLD_FIXED_WEIGHT)) {
     defines.push_back(literal("RANGE_NEAR", frame.weight_near));
     defines.push_back(literal("RANGE_FAR", frame.weight_far));
@@ -51,13 +52,15 @@ bool isOrthographic(const float* p) {
 
 Focal focalOf(const pld_frame& frame, int pixelsATexel) {
   // Offsets are in pixels a metre where nothing converges.
-  const float scale = (isOrthographic(frame.projection) ? 1.0f / frame.metres_per_unit : 1.0f) / static_cast<float>(pixelsATexel);
+  const float scale =
+      (isOrthographic(frame.projection) ? 1.0f / frame.metres_per_unit : 1.0f) / static_cast<float>(pixelsATexel);
   return {std::fabs(frame.projection[0]) * (0.5f * static_cast<float>(frame.width)) * scale,
           std::fabs(frame.projection[5]) * (0.5f * static_cast<float>(frame.height)) * scale};
 }
 
 std::string conflictOf(const Permutation& p) {
-  if (p.published() && p.fronts()) return "tier: found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, expected float or half";
+  if (p.published() && p.fronts())
+    return "tier: found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, expected float or half";
   if (p.published() && p.has(PLD_FEATURE_DISPERSION))
     return "features: found PLD_FEATURE_DISPERSION in PLD_TIER_PUBLISHED, which holds one offset for all channels";
   if (p.has(PLD_FEATURE_DISPERSION) && !p.has(PLD_FEATURE_REFRACTION))
@@ -67,7 +70,8 @@ std::string conflictOf(const Permutation& p) {
   if (p.low() && p.published())
     return "features: found PLD_FEATURE_LOW_RESOLUTION in PLD_TIER_PUBLISHED, which keeps no depths to upsample by";
   if (p.lowOver() && p.exact())
-    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_METHOD_FRONT_TAIL in PLD_TIER_EXACT, which keeps no nearest depth for it";
+    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_METHOD_FRONT_TAIL in PLD_TIER_EXACT, which keeps no "
+           "nearest depth for it";
   return {};
 }
 
@@ -194,7 +198,9 @@ std::vector<std::string> emptyDefines(const std::vector<PlaneSpec>& planes) {
   for (const PlaneSpec& plane : planes) {
     std::string value;
     for (const GLfloat x : plane.clear)
-      value += std::string(value.empty() ? "" : ", ") + (std::isinf(x) ? "intBitsToFloat(0x7f800000)" : x == 0.0f ? "0.0f" : "1.0f");
+      value += std::string(value.empty() ? "" : ", ") + (std::isinf(x) ? "intBitsToFloat(0x7f800000)"
+                                                         : x == 0.0f   ? "0.0f"
+                                                                       : "1.0f");
     defines.push_back("PLANE_" + std::to_string(plane.attachment) + " vec4(" + value + ")");
   }
   return defines;

@@ -1,4 +1,5 @@
-// What a pass keeps per pixel, and the text that it takes: one place that knows how methods, tiers and features combine.
+// What a pass keeps per pixel, and the text that it takes: one place that knows how methods, tiers and features
+// combine.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ struct Permutation {
   pld_depth depth = PLD_DEPTH_DEVICE;
   pld_rows rows = PLD_ROWS_UP;
   bool atLowResolution = false;  // the planes of PLD_STAGE_LOW
-  uint32_t fixedFields = 0;  // pld_fixed: of the next, what every frame has
+  uint32_t fixedFields = 0;      // pld_fixed: of the next, what every frame has
   pld_frame fixed{};
 
   bool has(pld_feature feature) const { return (features & static_cast<uint32_t>(feature)) != 0; }
@@ -41,7 +42,9 @@ struct Permutation {
   bool rimsApart() const { return rims() && !rimsInSeam(); }
   int seamUnits() const { return rimsInSeam() ? 4 : 3; }  // textures that the seam reads
   // Whether planar depth is needed beside the host's.
-  bool planarDepth() const { return rims() || low() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR; }
+  bool planarDepth() const {
+    return rims() || low() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR;
+  }
 };
 
 // Whether pld_frame.projection, by columns, has clip w = -z; whether it has w = 1.
@@ -73,14 +76,16 @@ struct PlaneSpec {
 std::vector<PlaneSpec> planesOf(const Permutation& permutation);
 PlaneSpec nearestPlane();  // of low-resolution layers besides
 
-// Of shaders/gl/sums_output.glsl, lean_output.glsl and resolve_here.glsl: what lies where. Without SCATTER, which stages and views choose.
+// Of shaders/gl/sums_output.glsl, lean_output.glsl and resolve_here.glsl: what lies where. Without SCATTER, which
+// stages and views choose.
 std::vector<std::string> scatterPlaces(const Permutation& permutation);
 // Defines of shaders/gl/seam.glsl for a stage; of empty_planes.frag; of planar_depth.frag; of resolve_here.glsl.
 std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);
 std::vector<std::string> emptyDefines(const std::vector<PlaneSpec>& planes);
 std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip);
 std::vector<std::string> resolveDefines(const Permutation& permutation);
-// Of the exact tier: which blocks a stage's lists have, from block 0 without a gap; defines of shaders/gl/exact_fold.frag.
+// Of the exact tier: which blocks a stage's lists have, from block 0 without a gap; defines of
+// shaders/gl/exact_fold.frag.
 bool listsOffsets(const Permutation& permutation, pld_stage stage);
 std::vector<std::string> foldDefines(const Permutation& permutation, pld_stage stage);
 

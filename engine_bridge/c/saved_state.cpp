@@ -9,10 +9,10 @@ namespace {
 constexpr GLenum kAlphaTest = 0x0BC0, kPolygonStipple = 0x0B42;
 // Switches, in the order of SavedState::enabled_.
 constexpr GLenum kSwitches[] = {
-    GL_DEPTH_TEST,      GL_STENCIL_TEST,    GL_COLOR_LOGIC_OP,  GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE,
-    GL_SAMPLE_MASK,     GL_RASTERIZER_DISCARD, GL_CULL_FACE,       GL_CLIP_DISTANCE0,        GL_CLIP_DISTANCE1,
-    GL_CLIP_DISTANCE2,  GL_CLIP_DISTANCE3,  GL_CLIP_DISTANCE4,  GL_CLIP_DISTANCE5,           GL_CLIP_DISTANCE6,
-    GL_CLIP_DISTANCE7};
+    GL_DEPTH_TEST,      GL_STENCIL_TEST,   GL_COLOR_LOGIC_OP,     GL_SAMPLE_ALPHA_TO_COVERAGE,
+    GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK,    GL_RASTERIZER_DISCARD, GL_CULL_FACE,
+    GL_CLIP_DISTANCE0,  GL_CLIP_DISTANCE1, GL_CLIP_DISTANCE2,     GL_CLIP_DISTANCE3,
+    GL_CLIP_DISTANCE4,  GL_CLIP_DISTANCE5, GL_CLIP_DISTANCE6,     GL_CLIP_DISTANCE7};
 constexpr int kAccumulationSwitches = 7;  // the first of them; clearing obeys RASTERIZER_DISCARD too
 
 void choose(const GlFunctions& gl, GLenum what, bool on) {
@@ -31,7 +31,8 @@ void setViewport(const GlFunctions& gl, const GLfloat* v) {
   if (gl.ViewportIndexedf)
     gl.ViewportIndexedf(0, v[0], v[1], v[2], v[3]);
   else
-    gl.Viewport(static_cast<GLint>(v[0]), static_cast<GLint>(v[1]), static_cast<GLsizei>(v[2]), static_cast<GLsizei>(v[3]));
+    gl.Viewport(static_cast<GLint>(v[0]), static_cast<GLint>(v[1]), static_cast<GLsizei>(v[2]),
+                static_cast<GLsizei>(v[3]));
 }
 
 GLint get(const GlFunctions& gl, GLenum what) {
@@ -111,12 +112,13 @@ void SavedState::save(const GlFunctions& gl, Units units, int uniformBinding, St
   gl.ActiveTexture(static_cast<GLenum>(activeTexture_));
   uniformBuffer_ = get(gl, GL_UNIFORM_BUFFER_BINDING);
   if (uniformBinding >= 0)
-    uniforms_ = boundAt(gl, GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, static_cast<GLuint>(uniformBinding));
+    uniforms_ = boundAt(gl, GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE,
+                        static_cast<GLuint>(uniformBinding));
   if (storage.first < 0) return;
   storageBuffer_ = get(gl, GL_SHADER_STORAGE_BUFFER_BINDING);
   for (int i = 0; i < storage.count; ++i)
-    listed_[i] = boundAt(gl, GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE,
-                         static_cast<GLuint>(storage.first + i));
+    listed_[i] = boundAt(gl, GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+                         GL_SHADER_STORAGE_BUFFER_SIZE, static_cast<GLuint>(storage.first + i));
 }
 
 void SavedState::restore(const GlFunctions& gl) const {
@@ -144,7 +146,8 @@ void SavedState::restore(const GlFunctions& gl) const {
   if (uniformBinding_ >= 0) bindAgain(gl, GL_UNIFORM_BUFFER, name(uniformBinding_), uniforms_);
   gl.BindBuffer(GL_UNIFORM_BUFFER, livingBuffer(gl, uniformBuffer_));
   if (storage_.first < 0) return;
-  for (int i = 0; i < storage_.count; ++i) bindAgain(gl, GL_SHADER_STORAGE_BUFFER, name(storage_.first + i), listed_[i]);
+  for (int i = 0; i < storage_.count; ++i)
+    bindAgain(gl, GL_SHADER_STORAGE_BUFFER, name(storage_.first + i), listed_[i]);
   gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, livingBuffer(gl, storageBuffer_));
 }
 

@@ -1,5 +1,5 @@
-// Shadows in the air: what a scene leaves of its lights at a point that need not lie on anything, by rays through opaque
-// and transparent surfaces.
+// Shadows in the air: what a scene leaves of its lights at a point that need not lie on anything, by rays through
+// opaque and transparent surfaces.
 #pragma once
 #include <memory>
 

@@ -37,7 +37,7 @@ struct RayFragments::Impl {
   Camera camera;
   CameraRays rays;
   TransparentScene traced;
-  std::vector<PunctualLight> lights;  // those that shine
+  std::vector<PunctualLight> lights;    // those that shine
   std::vector<std::size_t> lightIndex;  // of each in the scene
   std::shared_ptr<const ShadowRays> shadowRays;
   glm::mat3 worldFromView;
@@ -113,7 +113,8 @@ std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, cons
     for (std::size_t i = 0; i < lights.size(); ++i) {
       shading::Arriving arriving = shading::arrivingAt(lights[i], position);
       if (shadowRays)
-        arriving.irradiance *= shadowRays->visibilityFrom(shading::identityOf(instance.identity, crossing.triangle), lightIndex[i], glm::dvec3(position));
+        arriving.irradiance *= shadowRays->visibilityFrom(shading::identityOf(instance.identity, crossing.triangle),
+                                                          lightIndex[i], glm::dvec3(position));
       else if (settings.shadows)
         arriving.irradiance *= settings.shadows->visibility(lightIndex[i], position);
       reflected += shading::reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;

@@ -16,7 +16,8 @@ class RayFragments {
   RayFragments(const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
   ~RayFragments();
 
-  // From now on these rays say what transparent things are in the way of the scene's lights, instead of settings.shadows.
+  // From now on these rays say what transparent things are in the way of the scene's lights, instead of
+  // settings.shadows.
   void shadowBy(std::shared_ptr<const ShadowRays> rays);
 
   // Every transparent fragment in front of the G-buffer and of the nearest solid, in bands of rows from the top that

@@ -31,10 +31,14 @@ struct ShadowRays::Impl {
   std::vector<PunctualLight> lights;
   std::vector<float> eta;  // by material
 
-  bool opaque;                      // ShadowRays::Casters::opaque
+  bool opaque;  // ShadowRays::Casters::opaque
 
   Impl(const Scene& sceneGiven, const Camera& cameraGiven, bool opaqueGiven)
-      : scene(sceneGiven), camera(cameraGiven), traced(scene, camera), sampler(scene, TexelFilter::bilinear), opaque(opaqueGiven) {
+      : scene(sceneGiven),
+        camera(cameraGiven),
+        traced(scene, camera),
+        sampler(scene, TexelFilter::bilinear),
+        opaque(opaqueGiven) {
     for (const Light& light : scene.lights) lights.push_back(lightBlock(light, camera));
     for (const Material& material : scene.materials) eta.push_back(materialBlock(material).scattering.z);
   }
@@ -57,11 +61,11 @@ glm::vec3 ShadowRays::Impl::density(const Crossing& crossing, const glm::vec3& t
   const glm::vec3 normal = shading::normalTowardsEye(attributes.normal, towardsLight, toLight);
   const float cosine = std::clamp(std::abs(glm::dot(normal, toLight)), shading::PLD_GRAZING, 1.0f);
   const glm::vec3 t = shading::transmissionAt(surface, cosine);
-  return shading::shadowDensity(shading::opacityOf(surface.coverage, t), cosine, eta[static_cast<std::size_t>(primitive.material)]);
+  return shading::shadowDensity(shading::opacityOf(surface.coverage, t), cosine,
+                                eta[static_cast<std::size_t>(primitive.material)]);
 }
 
-glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& point,
-                                       std::vector<Crossing>& crossings,
+glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& point, std::vector<Crossing>& crossings,
                                        std::optional<std::uint32_t> from) const {
   const PunctualLight& block = lights[light];
   const shading::Arriving arriving = shading::arrivingAt(block, glm::vec3(point));

@@ -69,7 +69,8 @@ shading::Surface SurfaceSampler::surfaceAt(int index, const Attributes& attribut
   point.transmission = block.interface_.g;
   point.ior = block.interface_.b;
   point.specular = block.specular;
-  if (material.specularTexture.texture >= 0) point.specular.a *= texel(material.specularTexture, 6, block, attributes).a;
+  if (material.specularTexture.texture >= 0)
+    point.specular.a *= texel(material.specularTexture, 6, block, attributes).a;
   if (material.specularColorTexture.texture >= 0)
     point.specular *= glm::vec4(glm::vec3(texel(material.specularColorTexture, 7, block, attributes)), 1.0f);
   if (material.metallicRoughnessTexture.texture >= 0) {

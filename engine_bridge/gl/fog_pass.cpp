@@ -11,10 +11,10 @@ constexpr GLuint kDensityUnit = 12, kValuesBlock = 2, kLightsBlock = 1;  // shad
 struct FogBlock {
   shading::Medium medium;
   glm::mat4 volumeFromView{1.0f};
-  glm::vec4 pixelRay{0.0f};     // offset, scale
-  glm::ivec4 gridTexels{1};     // size; w: lights
-  glm::ivec4 volumeTexels{1};   // size of one light; w: 1 where there is one
-  glm::ivec4 choices{0};        // order of the march; 1 orthographic
+  glm::vec4 pixelRay{0.0f};    // offset, scale
+  glm::ivec4 gridTexels{1};    // size; w: lights
+  glm::ivec4 volumeTexels{1};  // size of one light; w: 1 where there is one
+  glm::ivec4 choices{0};       // order of the march; 1 orthographic
 };
 static_assert(sizeof(shading::Medium) == 12 * 16 && sizeof(FogBlock) == 20 * 16);
 

@@ -28,7 +28,7 @@ class FogPass {
   VertexArray noVertices_;
   Texture3d density_, open_;
   VolumeTexture visibility_;
-  std::shared_ptr<const DensityGrid> densityOf_;     // what density_ holds
+  std::shared_ptr<const DensityGrid> densityOf_;  // what density_ holds
 };
 
 }  // namespace pellucid::gl

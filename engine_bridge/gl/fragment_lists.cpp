@@ -53,7 +53,8 @@ void BandWriter::write(Renderer& renderer, const Image<float>& count, const Wind
   glNamedBufferSubData(cursors_.name(), 0, cursorBytes, places_.data());
   lists.dispersion.resize(renderer.disperses() ? lists.fragments.size() : 0);
   const auto dispersionBytes = static_cast<GLsizeiptr>(lists.dispersion.size() * sizeof(glm::vec4));
-  if (lists.disperses()) dispersion_.atLeast(lists.dispersion.size() * sizeof(glm::vec4), 7, "making room for dispersion");
+  if (lists.disperses())
+    dispersion_.atLeast(lists.dispersion.size() * sizeof(glm::vec4), 7, "making room for dispersion");
   renderer.setBand(band);
   renderer.targets().beginNothing();
   renderer.draw(Output::list, {band});
@@ -149,7 +150,8 @@ std::vector<Window> blocksOf(const Image<float>& count, const Window& window, in
   return blocks;
 }
 
-std::vector<Window> countedWindows(Renderer& renderer, std::size_t recordBytes, std::size_t bytes, Image<float>& count) {
+std::vector<Window> countedWindows(Renderer& renderer, std::size_t recordBytes, std::size_t bytes,
+                                   Image<float>& count) {
   Targets& targets = renderer.targets();
   const std::vector<Window> tiles = renderer.tiles();
   targets.beginCount();

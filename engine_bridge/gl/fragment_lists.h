@@ -15,8 +15,8 @@ std::vector<Window> bandsOf(const Image<float>& count, const Window& area, std::
 // one tile.
 std::vector<Window> blocksOf(const Image<float>& count, const Window& window, int edge, std::size_t most);
 
-// Draws the count of fragments per pixel and cuts the super-tile into windows: tiles as the settings want them, such that
-// each window's records fit `bytes` or are of one pixel, and blocks that a cache holds where blockSize() says so.
+// Draws the count of fragments per pixel and cuts the super-tile into windows: tiles as the settings want them, such
+// that each window's records fit `bytes` or are of one pixel, and blocks that a cache holds where blockSize() says so.
 std::vector<Window> countedWindows(Renderer& renderer, std::size_t recordBytes, std::size_t bytes, Image<float>& count);
 
 // Throws ResourceError for a pixel that stands alone and has more fragments than the device can list.
@@ -35,7 +35,7 @@ std::size_t blockSize(const Renderer& renderer, std::size_t recordBytes);
 // Bytes that one storage block may have.
 std::size_t largestStorageBlock();
 
-constexpr int kRasterTile = 64;                        // edge of what software rasterisers give to one thread
+constexpr int kRasterTile = 64;                           // edge of what software rasterisers give to one thread
 constexpr std::size_t kListCache = std::size_t{9} << 19;  // bytes of lists that a cache holds beside all else
 
 // A buffer that only grows: fresh memory for every band costs more than the lists themselves.
@@ -51,6 +51,7 @@ class ListBuffer {
 
 // After Renderer::begin(). `band` gets each band's lists and its window in pixels of the super-tile.
 //   bytes  what the device's copy of a band may have, and ours
-void listFragments(Renderer& renderer, std::size_t bytes, const std::function<void(FragmentLists&, const Window&)>& band);
+void listFragments(Renderer& renderer, std::size_t bytes,
+                   const std::function<void(FragmentLists&, const Window&)>& band);
 
 }  // namespace pellucid::gl

@@ -28,7 +28,8 @@ struct ChunkData {
   std::size_t bytes() const;
 };
 
-// Walks the transparent triangles, or the opaque ones, once. next() fills one chunk of at most `chunkBytes` (but at least one triangle).
+// Walks the transparent triangles, or the opaque ones, once. next() fills one chunk of at most `chunkBytes` (but at
+// least one triangle).
 class ChunkCutter {
  public:
   ChunkCutter(const Scene& scene, SubmissionOrder order, std::size_t chunkBytes, bool opaque = false);
@@ -68,10 +69,10 @@ class GeometryStream {
              const std::function<void(const std::vector<ChunkDraw>&)>& draw);
   std::size_t sceneTriangles() const { return sceneTriangles_; }  // that a sweep draws
   std::size_t sceneInstances() const { return sceneInstances_; }  // that they belong to
-  std::size_t chunks() const { return chunks_; }        // of the last sweep
-  std::size_t triangles() const { return triangles_; }  // of the last sweep
-  std::size_t draws() const { return draws_; }          // of the last sweep
-  bool resident() const { return resident_; }           // the next sweep like the last uploads nothing
+  std::size_t chunks() const { return chunks_; }                  // of the last sweep
+  std::size_t triangles() const { return triangles_; }            // of the last sweep
+  std::size_t draws() const { return draws_; }                    // of the last sweep
+  bool resident() const { return resident_; }                     // the next sweep like the last uploads nothing
 
  private:
   struct Slot {

@@ -63,13 +63,15 @@ class LeanWriter {
   }
 
  private:
-  // Each pixel's fragments go where its range begins, one after the other, into the next pixel's where there are too many.
+  // Each pixel's fragments go where its range begins, one after the other, into the next pixel's where there are too
+  // many.
   void draw(const Window& window, std::size_t places) {
     std::vector<LeanLists::Range>& ranges = lists_.ranges;
     places_.resize(ranges.size());
     for (std::size_t i = 0; i < ranges.size(); ++i) places_[i] = ranges[i].begin;
     const std::size_t cursorBytes = places_.size() * sizeof(std::uint32_t);
-    fragments_.atLeast(std::max<std::size_t>(places, 1) * sizeof(LeanFragment), kFragments, "making room for fragment lists");
+    fragments_.atLeast(std::max<std::size_t>(places, 1) * sizeof(LeanFragment), kFragments,
+                       "making room for fragment lists");
     // Too small for any fragment.
     if (places == 0) glBindBufferRange(GL_SHADER_STORAGE_BUFFER, kFragments, fragments_.name(), 0, sizeof(glm::vec2));
     cursors_.atLeast(cursorBytes, kCursors, "making room for the cursors of fragment lists");
@@ -95,7 +97,8 @@ class LeanWriter {
     }
     if (!solid_.empty()) lists_.solid = solidOf(solid_, window);
     block_(lists_, window);
-    if (mapped && !glUnmapNamedBuffer(fragments_.name())) throw ResourceError("GL: fragment lists were lost while being read");
+    if (mapped && !glUnmapNamedBuffer(fragments_.name()))
+      throw ResourceError("GL: fragment lists were lost while being read");
   }
 
   Renderer& renderer_;

@@ -39,7 +39,8 @@ PublishedTargets::PublishedTargets(int width, int height)
   glNamedBufferData(clamped_.name(), sizeof none, &none, GL_DYNAMIC_READ);
   checkGl("making the targets of the published tier");
   if (glCheckNamedFramebufferStatus(frame_.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw ResourceError("GL: the device cannot draw to RGBA16F, RGBA8 and RG8_SNORM at once, which --precision published needs");
+    throw ResourceError(
+        "GL: the device cannot draw to RGBA16F, RGBA8 and RG8_SNORM at once, which --precision published needs");
 }
 
 void PublishedTargets::begin(bool scatter) {
@@ -74,7 +75,8 @@ void PublishedTargets::read(OitPlanes& planes, int x, int y, PublishedClamps& cl
   clamps.written += written;
   for (int row = 0; row < height_; ++row)
     for (int column = 0; column < width_; ++column) {
-      const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+      const auto i =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
       PublishedPixel pixel;
       for (std::size_t c = 0; c < 4; ++c) {
         pixel.radiance[static_cast<int>(c)] = radiance[4 * i + c];

@@ -67,7 +67,8 @@ Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& cam
 void Renderer::over(const GBuffer& gbuffer, const Camera& camera) {
   requireMatch(gbuffer);
   if (camera.viewFromWorld != camera_.viewFromWorld || camera.orthographic != camera_.orthographic)
-    throw std::logic_error("Renderer::over: another place or kind of camera than the one that everything was placed by");
+    throw std::logic_error(
+        "Renderer::over: another place or kind of camera than the one that everything was placed by");
   gbuffer_ = &gbuffer;
   camera_ = camera;
   opaqueZ_.reset();
@@ -117,7 +118,7 @@ std::vector<Window> Renderer::superTiles() const {
 Renderer::Needs Renderer::needsOf(const PassSettings& settings) const {
   if (settings.layers != LayerChoice::all) return needs_[settings.layers == LayerChoice::lowResolution ? 1 : 0];
   const Needs &a = needs_[0], &b = needs_[1];
-  return {a.solids || b.solids, a.adds || b.adds, a.refracts || b.refracts, a.diffuses || b.diffuses,
+  return {a.solids || b.solids,       a.adds || b.adds,         a.refracts || b.refracts, a.diffuses || b.diffuses,
           a.disperses || b.disperses, a.coloured || b.coloured, a.infers || b.infers};
 }
 
@@ -140,14 +141,14 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.diffuses = settings.scatter.k0 > 0.0f && (needs.diffuses || all);
   features_.grey = !needs.coloured && !all;
   // Occluders are planes of the full resolution.
-  features_.occludes = settings.occlusion.occluders && settings.layers != LayerChoice::lowResolution &&
-                       wouldOcclude(settings);
+  features_.occludes =
+      settings.occlusion.occluders && settings.layers != LayerChoice::lowResolution && wouldOcclude(settings);
   features_.rimForm = settings.occlusion.rims ? settings.occlusion.form : -1;
 }
 
 bool Renderer::wouldOcclude(const PassSettings& settings) const {
-  return needsOf(settings).infers && (settings.environment || settings.surroundings != glm::vec3(0.0f) ||
-                        settings.occlusion.directShare > 0.0f);
+  return needsOf(settings).infers &&
+         (settings.environment || settings.surroundings != glm::vec3(0.0f) || settings.occlusion.directShare > 0.0f);
 }
 
 bool Renderer::wouldScatter(const PassSettings& settings) const {
@@ -186,9 +187,9 @@ void Renderer::uploadOccluders(const Window& superTile) {
 
 void Renderer::describeSurfaces() {
   for (std::size_t i = 0; i < shaders_.size(); ++i) {
-    shaders_[i].surface = surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
-                                         shaders_[i].vertexColours, features_, shaders_[i].infers,
-                                         scene_.primitives[i].points);
+    shaders_[i].surface =
+        surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
+                       shaders_[i].vertexColours, features_, shaders_[i].infers, scene_.primitives[i].points);
     std::fill(std::begin(shaders_[i].programs), std::end(shaders_[i].programs), nullptr);
   }
 }
@@ -387,7 +388,8 @@ FogFrame Renderer::fogFrame(const Window& superTile) const {
   const Window& data = gbuffer_->data;
   FogFrame frame;
   frame.defines = outputDefines(Output::sums, features_, settings_.weight.kind, settings_.normalisation);
-  frame.rays = pixelRays(camera_, gbuffer_->display, {data.x0 + superTile.x0, data.y0 + superTile.y0}, settings_.sample);
+  frame.rays =
+      pixelRays(camera_, gbuffer_->display, {data.x0 + superTile.x0, data.y0 + superTile.y0}, settings_.sample);
   return frame;
 }
 

@@ -66,7 +66,7 @@ class Renderer {
     std::vector<std::string> surface;
     bool vertexColours;
     bool canBeSolid;
-    bool infers = false;  // its rims take their occlusion from their neighbours
+    bool infers = false;                     // its rims take their occlusion from their neighbours
     const Program* programs[kOutputs] = {};  // by Output, looked up once per begin()
   };
   // What the materials of one resolution have.

@@ -41,9 +41,10 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glNamedBufferData(frameBuffer.name(), sizeof(frame), &frame, GL_STATIC_DRAW);
   gl::checkGl("uploading fragments to replay");
 
-  const bool scatters = lists.disperses() || std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
-    return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
-  });
+  const bool scatters =
+      lists.disperses() || std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
+        return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
+      });
   std::vector<std::string> defines{"WEIGHT " + std::to_string(weight.kind),
                                    "NORMALISATION " + std::to_string(normalisation)};
   if (scatters) {

@@ -113,13 +113,11 @@ ResolvePass::~ResolvePass() = default;
 void ResolvePass::draw(const ResolveTextures& textures, int width, int height, float largestVariance,
                        const DeviceResolveSettings& settings, std::uint32_t framebuffer) {
   const float largestSpread = std::hypot(static_cast<float>(width), static_cast<float>(height));
-  const bool pyramid =
-      textures.refraction && !settings.exact && settings.kernel == shading::PLD_DIFFUSE_GAUSSIAN;
-  const int levels =
-      pyramid ? shading::spreadLevel(shading::kernelSpread(largestVariance, largestSpread)) : 0;
+  const bool pyramid = textures.refraction && !settings.exact && settings.kernel == shading::PLD_DIFFUSE_GAUSSIAN;
+  const int levels = pyramid ? shading::spreadLevel(shading::kernelSpread(largestVariance, largestSpread)) : 0;
   impl_->layOut(width, height, levels);
-  const GLuint units[] = {textures.background, textures.radiance, textures.weight,     textures.opacity,
-                          textures.depth,      textures.opaqueZ,  textures.solid,      textures.light,
+  const GLuint units[] = {textures.background, textures.radiance, textures.weight,    textures.opacity,
+                          textures.depth,      textures.opaqueZ,  textures.solid,     textures.light,
                           textures.refraction, textures.nearestZ, textures.dispersion};
   for (GLuint unit = 0; unit < std::size(units); ++unit) {
     glBindTextureUnit(unit, units[unit]);
@@ -158,8 +156,8 @@ DeviceVeil ResolvePass::resolve(const OitPlanes& planes, const GBuffer& backgrou
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   if (std::max(width, height) > most)
-    throw ResourceError(fmt::format("GL: a picture of {}x{}: the device resolves at most {} pixels across", width,
-                                    height, most));
+    throw ResourceError(
+        fmt::format("GL: a picture of {}x{}: the device resolves at most {} pixels across", width, height, most));
   std::vector<gl::Texture> kept;
   const auto keep = [&kept](gl::Texture texture) {
     kept.push_back(std::move(texture));

@@ -8,7 +8,8 @@ namespace {
 template <class T>
 void readInto(const Texture& texture, GLenum format, int width, int height, Image<T>& plane, int x, int y) {
   Image<T> texels(width, height);
-  glGetTextureImage(texture.name(), 0, format, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(T)), texels.data());
+  glGetTextureImage(texture.name(), 0, format, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(T)),
+                    texels.data());
   checkGl("reading the planes of rims back");
   for (int row = 0; row < height; ++row) std::copy(texels.row(row), texels.row(row) + width, &plane.at(x, y + row));
 }

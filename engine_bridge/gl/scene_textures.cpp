@@ -92,8 +92,7 @@ TexelRange SceneTextures::range(int index) const {
   return index < 0 ? TexelRange{} : ranges_.at(index);
 }
 
-const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, TextureFilter filter,
-                                          float footprint) {
+const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, TextureFilter filter, float footprint) {
   const bool nearest = texture.nearest || filter == TextureFilter::nearest;
   const bool mipmap = filter == TextureFilter::mipmap;
   const int key =

@@ -44,8 +44,8 @@ Image<T> readBack(const Texture& texture, GLenum format, int width, int height) 
   Image<T> image(width, height);
   constexpr std::size_t most = std::numeric_limits<GLsizei>::max();
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glGetTextureImage(texture.name(), 0, format, GL_FLOAT,
-                    static_cast<GLsizei>(std::min(image.size() * sizeof(T), most)), image.data());
+  glGetTextureImage(texture.name(), 0, format, GL_FLOAT, static_cast<GLsizei>(std::min(image.size() * sizeof(T), most)),
+                    image.data());
   checkGl("reading shadow maps back");
   return image;
 }
@@ -131,17 +131,17 @@ void ShadowDrawer::beginPart(int first, int count) {
 
   ShadowFrameBlock shadow{};
   // The depth that texels span on a surface of 45 degrees.
-  const double texel = job_.radial ? 2.0 / (job_.view.camera.focal.x * job_.edge)
-                                   : 2.0 * job_.scale / (std::min(job_.view.camera.focal.x, job_.view.camera.focal.y) *
-                                                         job_.edge);
-  shadow.metric = glm::vec4(glm::dvec4(job_.scale, job_.radial ? job_.offset : job_.offset - job_.scale * job_.view.back,
-                                       job_.radial ? 1.0 : 0.0, kCullTexels * texel));
-  shadow.texels = {0u, static_cast<std::uint32_t>(first),
-                   settings_.form == ShadowMapSettings::Form::naive ||
-                           settings_.form == ShadowMapSettings::Form::published
-                       ? 1u
-                       : 0u,
-                   job_.seed};
+  const double texel =
+      job_.radial ? 2.0 / (job_.view.camera.focal.x * job_.edge)
+                  : 2.0 * job_.scale / (std::min(job_.view.camera.focal.x, job_.view.camera.focal.y) * job_.edge);
+  shadow.metric =
+      glm::vec4(glm::dvec4(job_.scale, job_.radial ? job_.offset : job_.offset - job_.scale * job_.view.back,
+                           job_.radial ? 1.0 : 0.0, kCullTexels * texel));
+  shadow.texels = {
+      0u, static_cast<std::uint32_t>(first),
+      settings_.form == ShadowMapSettings::Form::naive || settings_.form == ShadowMapSettings::Form::published ? 1u
+                                                                                                               : 0u,
+      job_.seed};
   if (gbuffer_) {
     shadow.lightFromEye = glm::mat4(job_.view.camera.viewFromWorld * glm::inverse(camera_.viewFromWorld));
     shadow.lens = glm::vec4(glm::dvec4(camera_.focal, camera_.centre));

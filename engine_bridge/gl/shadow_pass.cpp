@@ -15,8 +15,8 @@ namespace {
 using Form = ShadowMapSettings::Form;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kBandRows = 512;     // drawn at once, so that a map of any size takes as much device memory
-constexpr double kMargin = 16.0;   // texels as drawn: the tent's reach, and the texels that a lookup blends
+constexpr int kBandRows = 512;       // drawn at once, so that a map of any size takes as much device memory
+constexpr double kMargin = 16.0;     // texels as drawn: the tent's reach, and the texels that a lookup blends
 constexpr double kOpaqueBias = 2.0;  // texels of opaque maps
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -25,7 +25,11 @@ double secondsSince(Clock::time_point start) {
 class MapMaker {
  public:
   MapMaker(const Scene& scene, const Camera& camera, const GBuffer* gbuffer, const ShadowMapSettings& settings)
-      : scene_(scene), camera_(camera), gbuffer_(gbuffer), settings_(settings), drawer_(scene, camera, gbuffer, settings) {
+      : scene_(scene),
+        camera_(camera),
+        gbuffer_(gbuffer),
+        settings_(settings),
+        drawer_(scene, camera, gbuffer, settings) {
     filtered_ = settings.form == Form::variance || settings.form == Form::published;
   }
 
@@ -54,8 +58,8 @@ class MapMaker {
 shading::ShadowFace MapMaker::face(const LightView& view, int edge, const shading::ShadowGrid& grid, int channels) {
   const Window all{0, 0, edge, edge};
   const glm::dmat4 clip = clipFromView(view.camera, all, all, {0.5, 0.5});
-  shading::ShadowFace face = shading::shadowFaceOf(clip * view.camera.viewFromWorld * glm::inverse(camera_.viewFromWorld),
-                                                   edge, grid, -1.0, view.inner);
+  shading::ShadowFace face = shading::shadowFaceOf(
+      clip * view.camera.viewFromWorld * glm::inverse(camera_.viewFromWorld), edge, grid, -1.0, view.inner);
   face.extent.x = static_cast<int>(maps.texels.size());
   face.extent.z = channels;
   return face;
@@ -69,8 +73,8 @@ void MapMaker::transparentFace(const LightView& view, const LightViews& metric, 
   for (int first = 0; first < edge; first += kBandRows) {
     const int rows = std::min(kBandRows, edge - first);
     auto start = Clock::now();
-    const gl::DrawnBand band = filtered_ ? drawer_.casters(first - gl::kTentReach, rows + 2 * gl::kTentReach)
-                                         : drawer_.casters(first, rows);
+    const gl::DrawnBand band =
+        filtered_ ? drawer_.casters(first - gl::kTentReach, rows + 2 * gl::kTentReach) : drawer_.casters(first, rows);
     statistics.drawSeconds += secondsSince(start);
     start = Clock::now();
     if (filtered_) {
@@ -78,7 +82,8 @@ void MapMaker::transparentFace(const LightView& view, const LightViews& metric, 
       gl::filterShadow(band, channels, edge, keptRows,
                        grow(static_cast<std::size_t>(kept) * static_cast<std::size_t>(keptRows * channels)));
     } else {
-      gl::shadowTexels(band, channels, grow(static_cast<std::size_t>(edge) * static_cast<std::size_t>(rows * channels)));
+      gl::shadowTexels(band, channels,
+                       grow(static_cast<std::size_t>(edge) * static_cast<std::size_t>(rows * channels)));
     }
     statistics.filterSeconds += secondsSince(start);
   }
@@ -136,18 +141,21 @@ void MapMaker::light(const Light& light, std::uint32_t index) {
   const LightViews& metric = views.faces.empty() ? opaqueViews : views;
   const glm::dmat4 ownFromView = own * glm::inverse(camera_.viewFromWorld);
   if (metric.radial)
-    block.metric = glm::vec4(glm::dvec4(glm::dvec3(camera_.viewFromWorld * glm::dvec4(light.position, 1.0)), metric.scale));
+    block.metric =
+        glm::vec4(glm::dvec4(glm::dvec3(camera_.viewFromWorld * glm::dvec4(light.position, 1.0)), metric.scale));
   else
     for (int c = 0; c < 4; ++c)
       block.metric[c] = static_cast<float>(-metric.scale * ownFromView[c][2] + (c == 3 ? metric.offset : 0.0));
   block.faces[0] = static_cast<int>(maps.faces.size());
   for (const LightView& view : views.faces)
-    transparentFace(view, views, shading::mapSeedOf(settings_.seed, index, static_cast<std::uint32_t>(maps.faces.size())));
+    transparentFace(view, views,
+                    shading::mapSeedOf(settings_.seed, index, static_cast<std::uint32_t>(maps.faces.size())));
   block.faces[1] = static_cast<int>(maps.faces.size()) - block.faces[0];
   if (block.faces[1] > 0 && settings_.form != Form::published) {
     const LightView& view = views.faces[0];
     const double edge = views.faces.size() > 1 ? settings_.size / 2 : settings_.size;
-    const glm::vec2 bias = shading::shadowBias(metric.radial, std::min(view.camera.focal.x, view.camera.focal.y), edge, metric.scale);
+    const glm::vec2 bias =
+        shading::shadowBias(metric.radial, std::min(view.camera.focal.x, view.camera.focal.y), edge, metric.scale);
     block.bias.z = bias.x;
     block.bias.w = bias.y;
   }
@@ -178,8 +186,7 @@ ShadowMaps renderShadowMaps(GlContext&, const Scene& scene, const Camera& camera
     throw std::logic_error("shadow maps have an edge that is a multiple of 64, up to 16384");
   MapMaker maker(scene, camera, gbuffer, settings);
   std::uint32_t index = 0;
-  for (const Light& light : scene.lights)
-    maker.light(light, index++);
+  for (const Light& light : scene.lights) maker.light(light, index++);
   if (statistics) {
     *statistics = maker.statistics;
     statistics->faces = maker.maps.faces.size();

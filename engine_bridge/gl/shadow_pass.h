@@ -18,9 +18,9 @@ struct ShadowMapSettings {
     corrected,   // and scaled to the exact net density
   };
   Form form = Form::variance;
-  int size = 4096;       // texels along an edge as rendered; half of it for the faces of a cube
-  int opaqueSize = 0;    // of maps of opaque casters; 0: none, which is enough for opaque receivers
-  int closerEdge = 4;    // of the square that percentage-closer lookups take
+  int size = 4096;     // texels along an edge as rendered; half of it for the faces of a cube
+  int opaqueSize = 0;  // of maps of opaque casters; 0: none, which is enough for opaque receivers
+  int closerEdge = 4;  // of the square that percentage-closer lookups take
   std::uint32_t seed = 0;
   std::size_t budgetBytes = std::size_t{256} << 20;  // geometry on the device at once
   SubmissionOrder order = {};

@@ -37,9 +37,10 @@ ShadowTextures::ShadowTextures(const ShadowMaps& maps, const std::vector<Light>&
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (maps.texels.size() > static_cast<std::size_t>(most))
-    throw ResourceError(fmt::format("GL: shadow maps of {} texels: the device holds at most {}; a smaller --shadow-size "
-                                    "makes fewer",
-                                    maps.texels.size(), most));
+    throw ResourceError(
+        fmt::format("GL: shadow maps of {} texels: the device holds at most {}; a smaller --shadow-size "
+                    "makes fewer",
+                    maps.texels.size(), most));
   const glm::vec4 none(0.0f);
   const std::size_t bytes = std::max<std::size_t>(maps.texels.size(), 1) * sizeof(glm::vec4);
   glNamedBufferData(storage_.name(), static_cast<GLsizeiptr>(bytes), maps.texels.empty() ? &none : maps.texels.data(),

@@ -16,8 +16,8 @@ namespace {
 using namespace gl;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kDepthSteps = 65536.0f;           // shaders/gl/stochastic_cover.glsl
-constexpr std::size_t kSampleBytes = 64u << 20;   // of a band's samples; GL 4.5 promises storage blocks of 16 MiB
+constexpr float kDepthSteps = 65536.0f;          // shaders/gl/stochastic_cover.glsl
+constexpr std::size_t kSampleBytes = 64u << 20;  // of a band's samples; GL 4.5 promises storage blocks of 16 MiB
 constexpr GLuint kRankUnit = 13, kReachUnit = 14, kDepthsUnit = 15;
 
 // Mirrors shaders/gl/stochastic_frame.glsl.
@@ -91,7 +91,8 @@ void StochasticPass::Impl::uploadRanks(int samples) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (table.ranks().size() > static_cast<std::size_t>(most))
-    throw ResourceError("GL: the table of sample masks is larger than the device's texture buffers; --masks naive needs none");
+    throw ResourceError(
+        "GL: the table of sample masks is larger than the device's texture buffers; --masks naive needs none");
   glNamedBufferData(rankStorage.name(), static_cast<GLsizeiptr>(table.ranks().size() * sizeof(std::uint16_t)),
                     table.ranks().data(), GL_STATIC_DRAW);
   glTextureBuffer(ranks.name(), GL_R16UI, rankStorage.name());
@@ -150,8 +151,8 @@ void StochasticPass::Impl::drawBand(const Window& band, int channels, std::uint3
   checkGl("reading samples back");
   for (std::size_t i = 0; i < pixels; ++i)
     for (int c = 0; c < 3; ++c) {
-      const std::size_t first = (i * static_cast<std::size_t>(channels) +
-                                 static_cast<std::size_t>(std::min(c, channels - 1))) * count;
+      const std::size_t first =
+          (i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(std::min(c, channels - 1))) * count;
       const auto begin = found.begin() + static_cast<std::ptrdiff_t>(first);
       const auto open = std::count(begin, begin + static_cast<std::ptrdiff_t>(count), none);
       const auto width = static_cast<std::size_t>(band.width());
@@ -162,7 +163,8 @@ void StochasticPass::Impl::drawBand(const Window& band, int channels, std::uint3
 
 void StochasticPass::Impl::read(const Window& part, StochasticPlanes& planes) {
   const int width = part.width(), height = part.height();
-  const Image<glm::vec4> reach = readBack(targets->reach, width, height), depth = readBack(targets->depths, width, height),
+  const Image<glm::vec4> reach = readBack(targets->reach, width, height),
+                         depth = readBack(targets->depths, width, height),
                          light = readBack(targets->light, width, height), unit = readBack(targets->unit, width, height),
                          added = readBack(targets->added, width, height);
   for (int y = 0; y < height; ++y)
@@ -197,8 +199,14 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
   self.statistics = {};
   self.statistics.passes = samples.winnersOnly ? 3 : 2;
   const Window& data = self.gbuffer.data;
-  const Image<glm::vec3> black(data.width(), data.height(), glm::vec3(0.0f)), white(data.width(), data.height(), glm::vec3(1.0f));
-  StochasticPlanes planes{data, black, black, black, white, white,
+  const Image<glm::vec3> black(data.width(), data.height(), glm::vec3(0.0f)),
+      white(data.width(), data.height(), glm::vec3(1.0f));
+  StochasticPlanes planes{data,
+                          black,
+                          black,
+                          black,
+                          white,
+                          white,
                           Image<glm::vec4>(data.width(), data.height(), glm::vec4(0, 0, 0, kInfinity)),
                           Image<float>(data.width(), data.height(), kInfinity)};
   PassSettings plain = settings;
@@ -228,11 +236,12 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
     GLint64 limit = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit);
     const int channels = self.renderer.grey() ? 1 : 3;
-    const std::size_t row = static_cast<std::size_t>(part.width()) * static_cast<std::size_t>(channels) * count *
-                            sizeof(std::uint32_t);
+    const std::size_t row =
+        static_cast<std::size_t>(part.width()) * static_cast<std::size_t>(channels) * count * sizeof(std::uint32_t);
     const std::size_t room = std::min(kSampleBytes, static_cast<std::size_t>(std::max<GLint64>(limit, 0)));
     if (row > static_cast<std::size_t>(std::max<GLint64>(limit, 0)))
-      throw ResourceError("GL: a row of samples is larger than the device's storage blocks; more --aa passes make it smaller");
+      throw ResourceError(
+          "GL: a row of samples is larger than the device's storage blocks; more --aa passes make it smaller");
     const int rows = static_cast<int>(std::max<std::size_t>(room / row, 1));
     Image<glm::vec3> empty(part.width(), part.height(), glm::vec3(1.0f));
     for (int top = 0; top < part.height(); top += rows) {

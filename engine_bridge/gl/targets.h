@@ -12,9 +12,9 @@ constexpr int kSuperTile = 8192;
 
 // Which planes take part, and how they lie; see shaders/gl/sums_output.glsl.
 struct SumsLayout {
-  bool light = true;     // plane E; without it, it stays 0
-  bool scatter = false;  // refraction and diffusion
-  bool grey = false;     // one opacity for all channels
+  bool light = true;      // plane E; without it, it stays 0
+  bool scatter = false;   // refraction and diffusion
+  bool grey = false;      // one opacity for all channels
   bool disperse = false;  // refraction per channel
 };
 

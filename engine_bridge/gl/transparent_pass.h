@@ -126,8 +126,8 @@ class TransparentPass {
   // Exact lists of every transparent fragment in front of the G-buffer and of the nearest solid, tile by tile, top to
   // bottom; together the tiles cover the data window. Fragments of a pixel are in no order.
   void fragments(const PassSettings& settings, const std::function<void(const FragmentLists&)>& tile);
-  // The same without what scatters and without identities, for less of the memory's traffic, in blocks of any order; the
-  // lists hold until `tile` returns.
+  // The same without what scatters and without identities, for less of the memory's traffic, in blocks of any order;
+  // the lists hold until `tile` returns.
   void leanFragments(const PassSettings& settings, const std::function<void(const LeanLists&)>& tile);
 
   // Whether some material of the scene is cut out, lit by surroundings, and has rims to infer occlusion for.

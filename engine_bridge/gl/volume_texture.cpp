@@ -12,8 +12,8 @@ Texture3d upload3d(glm::ivec3 size, GLenum stored, GLenum format, const void* te
   GLint most = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
   if (std::max({size.x, size.y, size.z}) > most)
-    throw ResourceError(fmt::format("GL: a volume of {}x{}x{} texels: the device holds at most {} along an edge", size.x,
-                                    size.y, size.z, most));
+    throw ResourceError(fmt::format("GL: a volume of {}x{}x{} texels: the device holds at most {} along an edge",
+                                    size.x, size.y, size.z, most));
   Texture3d texture = Texture3d::make();
   glTextureStorage3D(texture.name(), 1, stored, size.x, size.y, size.z);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);

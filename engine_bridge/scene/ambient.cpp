@@ -12,8 +12,8 @@ AmbientLight ambientOf(const Surroundings& surroundings) {
   for (int i = 0; i < kDirections; ++i) {
     const double y = 1.0 - (2.0 * i + 1.0) / kDirections, across = std::sqrt(1.0 - y * y), turn = golden * i;
     const glm::dvec3 direction(across * std::cos(turn), y, across * std::sin(turn));
-    const glm::dvec3 light(glm::vec3(surroundings.at(
-        shading::directionTaps(glm::vec3(direction), shading::PLD_DIFFUSE_LEVEL, surroundings.edge))));
+    const glm::dvec3 light(glm::vec3(
+        surroundings.at(shading::directionTaps(glm::vec3(direction), shading::PLD_DIFFUSE_LEVEL, surroundings.edge))));
     mean += light / static_cast<double>(kDirections);
     for (int c = 0; c < 3; ++c) moments[c] += direction * (light[c] / kDirections);
   }

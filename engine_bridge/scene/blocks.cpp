@@ -12,8 +12,8 @@ void putTransform(MaterialBlock& block, std::size_t slot, const TextureRef& refe
   block.uvTransforms[2 * slot + 1] = {m[0][1], m[1][1], m[2][1], 0.0f};
 }
 
-// Facets of an index of 1 bend nothing, however rough; from 1.5 on roughness counts in full, as in Khronos' viewer, which
-// glTF's authors look at.
+// Facets of an index of 1 bend nothing, however rough; from 1.5 on roughness counts in full, as in Khronos' viewer,
+// which glTF's authors look at.
 float roughnessThrough(float ior) {
   return std::clamp(2.0f * ior - 2.0f, 0.0f, 1.0f);
 }
@@ -59,8 +59,7 @@ MaterialBlock materialBlock(const Material& material) {
   block.scattering = {material.collimation ? *material.collimation
                       : diffuses(material) ? -1.0f
                                            : 1.0f,
-                      material.diffuseTransmission, eta,
-                      material.thickness};
+                      material.diffuseTransmission, eta, material.thickness};
   const auto references = material.textures();
   for (std::size_t slot = 0; slot < references.size(); ++slot) putTransform(block, slot, *references[slot]);
   return block;

@@ -13,9 +13,9 @@ namespace pellucid {
 namespace {
 
 constexpr std::size_t kBatch = 1024;
-constexpr double kCancels = 1e-3;         // of the summed areas
-constexpr double kWeld = 1e-6;            // of the mesh's extent
-constexpr std::size_t kFewOpen = 1000;    // edges among which one may be open
+constexpr double kCancels = 1e-3;       // of the summed areas
+constexpr double kWeld = 1e-6;          // of the mesh's extent
+constexpr std::size_t kFewOpen = 1000;  // edges among which one may be open
 
 bool areasCancel(const Primitive& primitive) {
   VertexPlaces places;
@@ -74,9 +74,8 @@ bool isClosed(const Primitive& primitive) {
       const std::uint32_t a = corner[primitive.indices[i + k]], b = corner[primitive.indices[i + (k + 1) % 3]];
       if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
     }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return a.low != b.low ? a.low < b.low : a.high < b.high;
-  });
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
   std::size_t open = 0;
   for (std::size_t i = 0; i < edges.size();) {
     int sum = 0;

@@ -35,21 +35,23 @@ std::string wantedName(openvdb::io::File& file, const std::string& path, const s
   for (const std::string& each : floats)
     if (each == "density") return each;
   if (floats.size() == 1) return floats[0];
-  throw MeaningError(fmt::format("{}: found the grids {}, expected {}", path, namesOf(*grids),
-                                 name.empty() ? "a float grid `density`, or one float grid"
-                                              : fmt::format("a float grid named '{}'", name)));
+  throw MeaningError(fmt::format(
+      "{}: found the grids {}, expected {}", path, namesOf(*grids),
+      name.empty() ? "a float grid `density`, or one float grid" : fmt::format("a float grid named '{}'", name)));
 }
 
 glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::string& path) {
   if (!transform.isLinear())
-    throw MeaningError(fmt::format("{}: the grid's transform is a {}, expected an affine one", path, transform.mapType()));
+    throw MeaningError(
+        fmt::format("{}: the grid's transform is a {}, expected an affine one", path, transform.mapType()));
   const openvdb::math::Mat4d m = transform.baseMap()->getAffineMap()->getMat4();  // row vectors
   glm::dmat4 matrix;
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column) {
       matrix[row][column] = m(row, column);
       if (!std::isfinite(m(row, column)) || std::abs(m(row, column)) > 1e15)
-        throw MeaningError(fmt::format("{}: the grid's transform holds {}, expected magnitudes up to 1e15", path, m(row, column)));
+        throw MeaningError(
+            fmt::format("{}: the grid's transform holds {}, expected magnitudes up to 1e15", path, m(row, column)));
     }
   if (!(std::abs(glm::determinant(glm::dmat3(matrix))) > 1e-30))
     throw MeaningError(fmt::format("{}: the grid's transform flattens it, expected voxels with a volume", path));
@@ -80,7 +82,8 @@ void fill(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, Density
       }
 }
 
-std::shared_ptr<DensityGrid> read(const std::string& path, const GridOptions& options, std::vector<std::string>& notes) {
+std::shared_ptr<DensityGrid> read(const std::string& path, const GridOptions& options,
+                                  std::vector<std::string>& notes) {
   openvdb::io::File file(path);
   file.open(false);  // read now: a file that shrinks later is then none of ours
   const std::string name = wantedName(file, path, options.name);
@@ -89,7 +92,8 @@ std::shared_ptr<DensityGrid> read(const std::string& path, const GridOptions& op
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET)
     throw MeaningError(fmt::format("{}: the grid '{}' is a level set, expected a fog volume", path, name));
   const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-  if (box.empty()) throw MeaningError(fmt::format("{}: the grid '{}' has no active voxel, expected a fog volume", path, name));
+  if (box.empty())
+    throw MeaningError(fmt::format("{}: the grid '{}' has no active voxel, expected a fog volume", path, name));
   std::int64_t size[3];
   for (int c = 0; c < 3; ++c) size[c] = std::int64_t{box.max()[c]} - box.min()[c] + 1;
   if (size[0] > kMostTexels || size[1] > kMostTexels || size[2] > kMostTexels || size[0] * size[1] > kMostTexels ||
@@ -97,7 +101,8 @@ std::shared_ptr<DensityGrid> read(const std::string& path, const GridOptions& op
     throw ResourceError(fmt::format("{}: the grid '{}' spans {}x{}x{} voxels, expected at most {} in all", path, name,
                                     size[0], size[1], size[2], kMostTexels));
   auto made = std::make_shared<DensityGrid>();
-  made->density = Volume<float>({static_cast<int>(size[0]), static_cast<int>(size[1]), static_cast<int>(size[2])}, 0.0f);
+  made->density =
+      Volume<float>({static_cast<int>(size[0]), static_cast<int>(size[1]), static_cast<int>(size[2])}, 0.0f);
   glm::dmat4 world = worldFromIndex(grid->transform(), path);
   glm::dmat4 metres(options.metresPerUnit);
   metres[3][3] = 1.0;
@@ -111,8 +116,10 @@ std::shared_ptr<DensityGrid> read(const std::string& path, const GridOptions& op
   made->boxFromWorld = glm::inverse(world * indexFromBox);
   Oddities oddities;
   fill(*grid, box, *made, oddities);
-  if (oddities.nonFinite > 0) notes.push_back(fmt::format("{}: {} values are not finite and count as 0", path, oddities.nonFinite));
-  if (oddities.negative > 0) notes.push_back(fmt::format("{}: {} values are below 0 and count as 0", path, oddities.negative));
+  if (oddities.nonFinite > 0)
+    notes.push_back(fmt::format("{}: {} values are not finite and count as 0", path, oddities.nonFinite));
+  if (oddities.negative > 0)
+    notes.push_back(fmt::format("{}: {} values are below 0 and count as 0", path, oddities.negative));
   return made;
 }
 

@@ -109,7 +109,8 @@ double coveredArea(const Image<glm::vec4>& level, float cutoff, float scale) {
   for (int y = -1; y < level.height(); ++y)
     for (int x = -1; x < level.width(); ++x) {
       // Of the outermost patches half lies beyond the edge.
-      const double share = (x < 0 || x == level.width() - 1 ? 0.5 : 1.0) * (y < 0 || y == level.height() - 1 ? 0.5 : 1.0);
+      const double share =
+          (x < 0 || x == level.width() - 1 ? 0.5 : 1.0) * (y < 0 || y == level.height() - 1 ? 0.5 : 1.0);
       // The bilinear patch between four texel centres is linear along lines; they run the way it is steeper, so that
       // straight edges count exactly.
       float a = alpha(x, y), b = alpha(x + 1, y), c = alpha(x, y + 1), d = alpha(x + 1, y + 1);

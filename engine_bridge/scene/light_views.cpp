@@ -102,8 +102,7 @@ glm::dmat4 lightFromWorld(const Light& light) {
   return turned * glm::translate(glm::dmat4(1.0), -light.position);
 }
 
-LightViews lightViews(const Light& light, const Bounds& casters, double farthest, const Bounds& needed,
-                      double margin) {
+LightViews lightViews(const Light& light, const Bounds& casters, double farthest, const Bounds& needed, double margin) {
   if (casters.empty()) return {};
   if (light.kind == LightKind::directional) return directionalViews(light, casters, needed, margin);
   if (!(farthest > 0.0)) return {};

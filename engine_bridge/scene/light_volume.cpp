@@ -27,7 +27,8 @@ float densityAt(const DensityGrid& grid, const glm::dvec3& box) {
 float gridDepth(const Fog& fog, const shading::PunctualLight& light, const glm::dvec3& point, double step) {
   if (!fog.grid) return 0.0f;
   const bool endless = light.direction.w == 0.0f;
-  const glm::dvec3 path = endless ? -glm::dvec3(glm::vec3(light.direction)) : glm::dvec3(glm::vec3(light.position)) - point;
+  const glm::dvec3 path =
+      endless ? -glm::dvec3(glm::vec3(light.direction)) : glm::dvec3(glm::vec3(light.position)) - point;
   const double metres = glm::length(path);
   if (!(metres > 0.0)) return 0.0f;
   const glm::dvec3 toLight = path / metres;

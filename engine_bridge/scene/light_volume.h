@@ -13,7 +13,8 @@ namespace pellucid {
 //   point  view space, metres
 using PointVisibility = std::function<glm::vec3(std::size_t light, const glm::dvec3& point)>;
 
-// The same of a point on a transparent surface, which does not shadow itself there. Called from several threads at once.
+// The same of a point on a transparent surface, which does not shadow itself there. Called from several threads at
+// once.
 //   light     counts lights as lightBlocks() does: those that shine
 //   identity  of the triangle, as Fragment::identity
 using SurfaceVisibility = std::function<glm::vec3(std::size_t light, const glm::dvec3& point, std::uint32_t identity)>;

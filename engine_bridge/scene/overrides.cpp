@@ -48,11 +48,14 @@ const char* const kSetKeys =
 SetResult setKey(Material& material, const std::string& key, const std::string& value) {
   const bool isLength = key == "softness" || key == "pointScale", isPhase = key == "phase";
   const bool isNumber = key == "collimation" || key == "coverage" || isLength || isPhase;
-  const bool isFlag = key == "additive" || key == "lowResolution" || key == "castsShadow" || key == "thin" ||
-                      key == "billboard";
+  const bool isFlag =
+      key == "additive" || key == "lowResolution" || key == "castsShadow" || key == "thin" || key == "billboard";
   if (!isNumber && !isFlag) return SetResult::unknownKey;
-  const std::optional<float> unit =
-      isNumber ? parseWithin(value, isPhase ? -0.98f : 0.0f, isLength ? 1e6f : isPhase ? 0.98f : 1.0f) : std::nullopt;
+  const std::optional<float> unit = isNumber ? parseWithin(value, isPhase ? -0.98f : 0.0f,
+                                                           isLength  ? 1e6f
+                                                           : isPhase ? 0.98f
+                                                                     : 1.0f)
+                                             : std::nullopt;
   const std::optional<bool> flag = isFlag ? parseBool(value) : std::nullopt;
   if (!unit && !flag) return SetResult::badValue;
   if (key == "collimation") material.collimation = unit;

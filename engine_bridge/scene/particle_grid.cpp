@@ -121,7 +121,8 @@ std::shared_ptr<const DensityGrid> particleGrid(const Scene& scene, int longest)
   const glm::dvec3 extent = high - low;
   const double edge = std::max({extent.x, extent.y, extent.z}) / longest;
   auto grid = std::make_shared<DensityGrid>();
-  grid->density = Volume<float>(glm::clamp(glm::ivec3(glm::ceil(extent / edge - 1e-6)), glm::ivec3(1), glm::ivec3(longest)), 0.0f);
+  grid->density =
+      Volume<float>(glm::clamp(glm::ivec3(glm::ceil(extent / edge - 1e-6)), glm::ivec3(1), glm::ivec3(longest)), 0.0f);
   for (int c = 0; c < 3; ++c) {
     const double size = edge * grid->density.size[c];
     grid->boxFromWorld[c][c] = 1.0 / size;
@@ -153,10 +154,12 @@ int particleMapSize(const Scene& scene, int across, int most) {
   const double area = std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
   if (discs < kDense * area) return most;
   const double texels = 0.5 * across * std::max({extent.x, extent.y, extent.z}) * number / sum;
-  return static_cast<int>(std::min(std::ceil(std::clamp(texels, 512.0, 1e6) / 128.0) * 128.0, static_cast<double>(most)));
+  return static_cast<int>(
+      std::min(std::ceil(std::clamp(texels, 512.0, 1e6) / 128.0) * 128.0, static_cast<double>(most)));
 }
 
-Fog particleFog(std::shared_ptr<const DensityGrid> grid, const Camera& camera, std::vector<shading::PunctualLight> lights) {
+Fog particleFog(std::shared_ptr<const DensityGrid> grid, const Camera& camera,
+                std::vector<shading::PunctualLight> lights) {
   MediumSettings medium;
   medium.density = 1.0;
   medium.grid = std::move(grid);

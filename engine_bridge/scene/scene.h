@@ -75,8 +75,8 @@ struct Material {
 
   // All of them, in the order of their places in MaterialBlock.
   std::array<const TextureRef*, 8> textures() const {
-    return {&baseColorTexture, &metallicRoughnessTexture, &emissiveTexture, &transmissionTexture,
-            &thicknessTexture, &normalTexture,            &specularTexture, &specularColorTexture};
+    return {&baseColorTexture, &metallicRoughnessTexture, &emissiveTexture,     &transmissionTexture, &thicknessTexture,
+            &normalTexture,    &specularTexture,          &specularColorTexture};
   }
 
   // Goes through the transparent pass; opaque primitives belong to the G-buffer.

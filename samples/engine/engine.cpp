@@ -1,11 +1,12 @@
-// The smallest deferred engine that has transparency: G-buffer, light pass, Pellucid's pass, resolve. Of Pellucid it knows
-// the public header alone. Headless by EGL, or in a window.
+// The smallest deferred engine that has transparency: G-buffer, light pass, Pellucid's pass, resolve. Of Pellucid it
+// knows the public header alone. Headless by EGL, or in a window.
 //
-//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD] [window[:FRAMES]]    METHOD: phenomenological, weighted or front+tail
+//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD] [window[:FRAMES]]    METHOD: phenomenological, weighted or
+//   front+tail
 //
 // Draws the glTF's transparent primitives over a room of its own, and writes OUTDIR/opaque.exr (colour and Z, what
-// `pellucid composite` takes) and OUTDIR/frame.exr. `window` walks around them until it is closed; with FRAMES it stands
-// still for so many, and OUTDIR/window.exr is what the window shows of the last.
+// `pellucid composite` takes) and OUTDIR/frame.exr. `window` walks around them until it is closed; with FRAMES it
+// stands still for so many, and OUTDIR/window.exr is what the window shows of the last.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 // After them: it brings a GL of its own.
@@ -72,14 +73,15 @@ struct Scene {
   glm::mat4 viewFromWorld{1.0f};
   float yfov = 0.8f;
   glm::vec3 toSun{0.0f, 1.0f, 0.0f}, sun{0.0f};  // world; W/m^2
-  glm::vec3 least{1e30f}, most{-1e30f};         // of what is transparent, world
+  glm::vec3 least{1e30f}, most{-1e30f};          // of what is transparent, world
 };
 
 Mesh upload(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices) {
   Mesh mesh;
   GLuint buffers[2];
   glCreateBuffers(2, buffers);
-  glNamedBufferData(buffers[0], static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(), GL_STATIC_DRAW);
+  glNamedBufferData(buffers[0], static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                    GL_STATIC_DRAW);
   glNamedBufferData(buffers[1], static_cast<GLsizeiptr>(indices.size() * 4), indices.data(), GL_STATIC_DRAW);
   glCreateVertexArrays(1, &mesh.array);
   glVertexArrayVertexBuffer(mesh.array, 0, buffers[0], 0, sizeof(Vertex));
@@ -142,7 +144,8 @@ struct Gltf {
     return bytes.data() + view.value("byteOffset", std::size_t{0}) + accessor.value("byteOffset", std::size_t{0});
   }
   std::vector<glm::vec3> vectors(const json& accessor) const {
-    if (accessor.at("componentType") != 5126 || accessor.at("type") != "VEC3") stop("positions and normals are float here");
+    if (accessor.at("componentType") != 5126 || accessor.at("type") != "VEC3")
+      stop("positions and normals are float here");
     std::vector<glm::vec3> values(accessor.at("count").get<std::size_t>());
     std::memcpy(values.data(), at(accessor), values.size() * sizeof(glm::vec3));
     return values;
@@ -174,15 +177,17 @@ Gltf read(const std::string& path) {
 
 glm::mat4 transformOf(const json& node) {
   if (node.contains("matrix")) return glm::make_mat4(node["matrix"].get<std::vector<float>>().data());
-  const auto t = node.value("translation", std::vector<float>{0, 0, 0}), s = node.value("scale", std::vector<float>{1, 1, 1}),
+  const auto t = node.value("translation", std::vector<float>{0, 0, 0}),
+             s = node.value("scale", std::vector<float>{1, 1, 1}),
              q = node.value("rotation", std::vector<float>{0, 0, 0, 1});
-  return glm::translate(glm::mat4(1.0f), glm::vec3(t[0], t[1], t[2])) * glm::mat4_cast(glm::quat(q[3], q[0], q[1], q[2])) *
-         glm::scale(glm::mat4(1.0f), glm::vec3(s[0], s[1], s[2]));
+  return glm::translate(glm::mat4(1.0f), glm::vec3(t[0], t[1], t[2])) *
+         glm::mat4_cast(glm::quat(q[3], q[0], q[1], q[2])) * glm::scale(glm::mat4(1.0f), glm::vec3(s[0], s[1], s[2]));
 }
 
 Material materialOf(const json& source) {
   Material material;
-  const json none = json::object(), pbr = source.value("pbrMetallicRoughness", none), more = source.value("extensions", none);
+  const json none = json::object(), pbr = source.value("pbrMetallicRoughness", none),
+             more = source.value("extensions", none);
   const auto base = pbr.value("baseColorFactor", std::vector<float>{1, 1, 1, 1});
   material.base = glm::vec4(base[0], base[1], base[2], base[3]);
   material.roughness = pbr.value("roughnessFactor", 1.0f);
@@ -203,8 +208,10 @@ void addNode(Scene& scene, const Gltf& gltf, std::size_t index, const glm::mat4&
     scene.yfov = gltf.root.at("cameras").at(node["camera"].get<std::size_t>()).at("perspective").at("yfov");
   }
   if (node.contains("extensions") && node["extensions"].contains("KHR_lights_punctual")) {
-    const json& light = gltf.root.at("extensions").at("KHR_lights_punctual").at("lights").at(
-        node["extensions"]["KHR_lights_punctual"].at("light").get<std::size_t>());
+    const json& light = gltf.root.at("extensions")
+                            .at("KHR_lights_punctual")
+                            .at("lights")
+                            .at(node["extensions"]["KHR_lights_punctual"].at("light").get<std::size_t>());
     const auto colour = light.value("color", std::vector<float>{1, 1, 1});
     scene.toSun = glm::normalize(glm::vec3(world[2]));
     scene.sun = glm::vec3(colour[0], colour[1], colour[2]) * (light.value("intensity", 1.0f) / 683.0f);  // lux
@@ -327,7 +334,8 @@ void main() {
 
 GLuint program(const std::string& vertex, const std::string& fragment) {
   const GLuint name = glCreateProgram();
-  for (const auto& [kind, text] : {std::pair{GL_VERTEX_SHADER, kVersion + vertex}, {GL_FRAGMENT_SHADER, kVersion + fragment}}) {
+  for (const auto& [kind, text] :
+       {std::pair{GL_VERTEX_SHADER, kVersion + vertex}, {GL_FRAGMENT_SHADER, kVersion + fragment}}) {
     const GLuint shader = glCreateShader(static_cast<GLenum>(kind));
     const char* source = text.c_str();
     glShaderSource(shader, 1, &source, nullptr);
@@ -393,7 +401,8 @@ class Engine {
   void draw(const Scene& scene) {
     const float f = 1.0f / std::tan(0.5f * scene.yfov);
     const float across = f * static_cast<float>(height_) / static_cast<float>(width_);
-    clipFromView_ = glm::mat4(across, 0, 0, 0, 0, f, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0);  // reversed depth, nothing is too far
+    clipFromView_ =
+        glm::mat4(across, 0, 0, 0, 0, f, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0);  // reversed depth, nothing is too far
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glViewport(0, 0, width_, height_);
 
@@ -446,7 +455,8 @@ class Engine {
   void show() const {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glEnable(GL_FRAMEBUFFER_SRGB);
-    glBlitNamedFramebuffer(frames_[2], 0, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(frames_[2], 0, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                           GL_NEAREST);
     glDisable(GL_FRAMEBUFFER_SRGB);
   }
 
@@ -457,7 +467,8 @@ class Engine {
     std::vector<float> rows, depth = read(depth_, GL_DEPTH_COMPONENT, 1), colour = read(source, GL_RGBA, 4);
     for (int y = height_ - 1; y >= 0; --y)
       for (int x = 0; x < width_; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+        const std::size_t i =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
         for (std::size_t c = 0; c < 4; ++c) rows.push_back(colour[4 * i + c]);
         rows.push_back(depth[i] > 0.0f ? kNear / depth[i] : std::numeric_limits<float>::infinity());
       }
@@ -517,7 +528,8 @@ class Engine {
       glUniformMatrix3fv(glGetUniformLocation(name, "normalFromObject"), 1, GL_FALSE, glm::value_ptr(normals));
       glUniform4fv(glGetUniformLocation(name, "base"), 1, &material.base.x);
       if (transparent) {
-        glUniform4f(glGetUniformLocation(name, "surfaceValues"), material.roughness, material.transmission, material.ior, material.thickness);
+        glUniform4f(glGetUniformLocation(name, "surfaceValues"), material.roughness, material.transmission,
+                    material.ior, material.thickness);
         glUniform2i(glGetUniformLocation(name, "kinds"), material.unlit, material.thickness > 0.0f);
       }
       (material.bothSides ? glDisable : glEnable)(GL_CULL_FACE);
@@ -528,7 +540,8 @@ class Engine {
   }
 
   int width_, height_;
-  GLuint albedo_ = 0, normal_ = 0, lit_ = 0, depth_ = 0, frame_ = 0, frames_[3] = {}, nothing_ = 0, opaque_ = 0, light_ = 0;
+  GLuint albedo_ = 0, normal_ = 0, lit_ = 0, depth_ = 0, frame_ = 0, frames_[3] = {}, nothing_ = 0, opaque_ = 0,
+         light_ = 0;
   std::vector<std::pair<pld_stage, GLuint>> stages_;
   glm::mat4 clipFromView_{1.0f};
   pld_pass* pass_ = nullptr;
@@ -544,8 +557,11 @@ void makeContext() {
 
 GLFWwindow* makeWindow(int width, int height) {
   if (!glfwInit()) stop("no window system");
-  for (const auto& [hint, value] : {std::pair{GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API}, {GLFW_CONTEXT_VERSION_MAJOR, 4},
-                                    {GLFW_CONTEXT_VERSION_MINOR, 5}, {GLFW_RESIZABLE, 0}, {GLFW_SRGB_CAPABLE, 1}})
+  for (const auto& [hint, value] : {std::pair{GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API},
+                                    {GLFW_CONTEXT_VERSION_MAJOR, 4},
+                                    {GLFW_CONTEXT_VERSION_MINOR, 5},
+                                    {GLFW_RESIZABLE, 0},
+                                    {GLFW_SRGB_CAPABLE, 1}})
     glfwWindowHint(hint, value);
   GLFWwindow* window = glfwCreateWindow(width, height, "Pellucid", nullptr, nullptr);
   if (!window) stop("no window with OpenGL 4.5");
@@ -560,7 +576,8 @@ int main(int count, char** arguments) {
   int width = 640, height = 360;
   if (count > 3 && (std::sscanf(arguments[3], "%dx%d", &width, &height) != 2 || width < 1 || height < 1))
     stop("expected WIDTHxHEIGHT");
-  const std::string asked = count > 4 ? arguments[4] : "phenomenological", named = asked.substr(0, asked.find(':')), folder = arguments[2];
+  const std::string asked = count > 4 ? arguments[4] : "phenomenological", named = asked.substr(0, asked.find(':')),
+                    folder = arguments[2];
   const char* const names[] = {"phenomenological", "weighted", "front+tail"};
   const auto method = std::find(std::begin(names), std::end(names), named) - std::begin(names);
   if (method == 3 || (asked != named && asked != named + ":exact")) stop("no method " + asked);
@@ -573,7 +590,8 @@ int main(int count, char** arguments) {
     if (!window) makeContext();
     Scene scene;
     const Gltf gltf = read(arguments[1]);
-    for (const json& root : gltf.root.at("scenes").at(0).at("nodes")) addNode(scene, gltf, root.get<std::size_t>(), glm::mat4(1.0f));
+    for (const json& root : gltf.root.at("scenes").at(0).at("nodes"))
+      addNode(scene, gltf, root.get<std::size_t>(), glm::mat4(1.0f));
     addRoom(scene);
     Engine engine(width, height, static_cast<pld_method>(method), asked == named ? PLD_TIER_FLOAT : PLD_TIER_EXACT);
     engine.draw(scene);

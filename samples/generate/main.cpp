@@ -1,5 +1,5 @@
-// pellucid_samples OUTDIR [NAME|all [HEIGHT]] [--hairs N | --particles N]: writes OUTDIR/NAME.exr and OUTDIR/NAME.glb, HEIGHT pixels
-// high.
+// pellucid_samples OUTDIR [NAME|all [HEIGHT]] [--hairs N | --particles N]: writes OUTDIR/NAME.exr and OUTDIR/NAME.glb,
+// HEIGHT pixels high.
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -76,7 +76,8 @@ void run(int count, char** arguments) {
   bool known = wanted == "all";
   for (const Entry& entry : kSamples) known = known || wanted == entry.name;
   if (!known) throw UsageError("no sample named '" + wanted + "'; expected one of " + names() + ", or all");
-  if (counts.hairs && wanted != "hair" && wanted != "all") throw UsageError("--hairs: the sample " + wanted + " has none");
+  if (counts.hairs && wanted != "hair" && wanted != "all")
+    throw UsageError("--hairs: the sample " + wanted + " has none");
   if (counts.particles && wanted != "smokeball" && wanted != "all")
     throw UsageError("--particles: the sample " + wanted + " has none");
   std::error_code failure;

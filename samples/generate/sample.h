@@ -38,12 +38,10 @@ struct Entry {
   const char* name;
   Sample (*make)();
 };
-inline const std::vector<Entry> kSamples = {{"bars", bars},       {"bottles", bottles}, {"smoke", smoke},
-                                            {"foliage", foliage}, {"frosted", frosted}, {"ball", ball},
-                                            {"hair", hair},       {"cad", cad},         {"clouds", clouds},
-                                            {"street", street},   {"mixed", mixed},
-                                            {"smokeball", smokeball}, {"shafts", shafts},
-                                            {"shadows", shadows}, {"chess", chess},
-                                            {"sparks", fire}};
+inline const std::vector<Entry> kSamples = {
+    {"bars", bars},       {"bottles", bottles}, {"smoke", smoke}, {"foliage", foliage},
+    {"frosted", frosted}, {"ball", ball},       {"hair", hair},   {"cad", cad},
+    {"clouds", clouds},   {"street", street},   {"mixed", mixed}, {"smokeball", smokeball},
+    {"shafts", shafts},   {"shadows", shadows}, {"chess", chess}, {"sparks", fire}};
 
 }  // namespace pellucid::samples

@@ -70,7 +70,7 @@ glm::dvec3 sunlight(const Studio& studio, glm::dvec3 point, glm::dvec3 normal, i
 
 struct Lit {
   glm::dvec3 radiance, sun;  // sun: its part
-  double open;  // [0,1]
+  double open;               // [0,1]
 };
 
 Lit shade(const Studio& studio, const Ray& ray, int sample, const PixelSeed& seed) {

@@ -16,7 +16,7 @@ nlohmann::json thinGlass(const std::string& name, glm::dvec3 colour) {
 }
 
 std::vector<glm::dvec2> goblet() {
-  return {{0.0, 0.0},  {0.2, 0.0},  {0.2, 0.02}, {0.04, 0.05}, {0.03, 0.3},
+  return {{0.0, 0.0},   {0.2, 0.0},  {0.2, 0.02},  {0.04, 0.05}, {0.03, 0.3},
           {0.06, 0.36}, {0.2, 0.46}, {0.25, 0.62}, {0.22, 0.82}, {0.2, 0.9}};
 }
 
@@ -55,7 +55,8 @@ Sample mixed() {
     const auto random = [&](std::uint32_t what) { return unit(hash(i, what, 23)); };
     const double height = random(0) * random(0);
     const glm::dvec3 middle((random(1) - 0.5) * 2.6, 0.1 + 1.0 * height, -1.5 + 2.1 * random(2));
-    smoke.push_back({middle, 0.6 + 0.7 * random(3), glm::mix(glm::dvec3(0.62, 0.6, 0.58), glm::dvec3(0.9, 0.87, 0.82), height)});
+    smoke.push_back(
+        {middle, 0.6 + 0.7 * random(3), glm::mix(glm::dvec3(0.62, 0.6, 0.58), glm::dvec3(0.9, 0.87, 0.82), height)});
   }
   addCloud(sample.glb, {"smoke", 23, 0.45, {{"lowResolution", true}}}, smoke);
   sample.glb.addCamera("cam", sample.view);

@@ -108,17 +108,20 @@ osg::ref_ptr<osg::Program> program(const std::string& fragment) {
 
 osg::ref_ptr<osg::Geometry> geometryOf(const Part& part) {
   osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
-  osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array, normals = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
+  osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array,
+                               normals = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
   for (const glm::vec3& p : part.mesh.positions) positions->push_back({p.x, p.y, p.z});
   for (const glm::vec3& n : part.mesh.normals) normals->push_back({n.x, n.y, n.z});
   geometry->setVertexArray(positions);
   geometry->setNormalArray(normals);
-  geometry->addPrimitiveSet(new osg::DrawElementsUInt(GL_TRIANGLES, part.mesh.indices.begin(), part.mesh.indices.end()));
+  geometry->addPrimitiveSet(
+      new osg::DrawElementsUInt(GL_TRIANGLES, part.mesh.indices.begin(), part.mesh.indices.end()));
   geometry->setUseDisplayList(false);
   geometry->setUseVertexBufferObjects(true);
   osg::StateSet* state = geometry->getOrCreateStateSet();
   state->addUniform(new osg::Uniform("base", osg::Vec4(part.colour.r, part.colour.g, part.colour.b, part.coverage)));
-  state->addUniform(new osg::Uniform("surfaceValues", osg::Vec4(part.roughness, part.transmission, part.ior, part.thickness)));
+  state->addUniform(
+      new osg::Uniform("surfaceValues", osg::Vec4(part.roughness, part.transmission, part.ior, part.thickness)));
   if (part.thickness > 0.0f || part.name.empty()) state->setAttributeAndModes(new osg::CullFace);
   return geometry;
 }
@@ -183,7 +186,8 @@ class Drawing {
       const auto start = std::chrono::steady_clock::now();
       viewer_.frame();
       glFinish();
-      if (i >= 2) times.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      if (i >= 2)
+        times.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
     std::sort(times.begin(), times.end());
     return times[times.size() / 2];
@@ -197,7 +201,8 @@ class Drawing {
     Picture picture{width_, height_, {}};
     for (int y = height_ - 1; y >= 0; --y)
       for (int x = 0; x < width_; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+        const std::size_t i =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
         for (std::size_t c = 0; c < 4; ++c) picture.texels.push_back(colour[4 * i + c]);
         const double d = depth[i];
         picture.texels.push_back(d < 1.0 ? static_cast<float>(kNear * kFar / (kFar - d * (kFar - kNear)))
@@ -232,7 +237,8 @@ void write(const std::string& path, const Picture& picture) {
   OIIO::ImageSpec spec(picture.width, picture.height, 5, OIIO::TypeDesc::FLOAT);
   spec.channelnames = {"R", "G", "B", "A", "Z"};
   const auto file = OIIO::ImageOutput::create(path);
-  if (!file || !file->open(path, spec) || !file->write_image(OIIO::TypeDesc::FLOAT, picture.texels.data()) || !file->close())
+  if (!file || !file->open(path, spec) || !file->write_image(OIIO::TypeDesc::FLOAT, picture.texels.data()) ||
+      !file->close())
     stop(path + ": could not be written");
 }
 
@@ -259,7 +265,8 @@ Difference difference(const Picture& drawn, const Picture& expected) {
   for (std::size_t i = 0; i < pixels; ++i) {
     double worst = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double off = std::abs(static_cast<double>(drawn.texels[5 * i + c]) - static_cast<double>(expected.texels[3 * i + c]));
+      const double off =
+          std::abs(static_cast<double>(drawn.texels[5 * i + c]) - static_cast<double>(expected.texels[3 * i + c]));
       found.rmse += off * off;
       worst = std::max(worst, off);
     }
@@ -289,11 +296,10 @@ struct Row {
   const char* why;
 };
 // Attributes are interpolated by other shaders than the offline program's, so edges fall differently on a few pixels.
-const Row kRows[] = {
-    {"weighted", PLD_METHOD_WEIGHTED, false, 1e-6, "pixels at edges"},
-    {"front+tail", PLD_METHOD_FRONT_TAIL, false, 1e-6, "pixels at edges"},
-    {"phenomenological", PLD_METHOD_PHENOMENOLOGICAL, true, 5e-6,
-     "pixels at edges and, as rows run up in OpenGL, places of the spread pyramid's texels"}};
+const Row kRows[] = {{"weighted", PLD_METHOD_WEIGHTED, false, 1e-6, "pixels at edges"},
+                     {"front+tail", PLD_METHOD_FRONT_TAIL, false, 1e-6, "pixels at edges"},
+                     {"phenomenological", PLD_METHOD_PHENOMENOLOGICAL, true, 5e-6,
+                      "pixels at edges and, as rows run up in OpenGL, places of the spread pyramid's texels"}};
 
 }  // namespace
 
@@ -330,7 +336,9 @@ int main(int count, char** arguments) {
     }
     const Picture truth = readRgb(folder + "/offline-over.exr", scene);
     osgUtil::RenderBin* bin = osgUtil::RenderBin::getRenderBinPrototype("DepthSortedBin");
-    std::printf("%dx%d; error against a sorted over of every fragment, and difference from the offline picture of the method\n", width, height);
+    std::printf(
+        "%dx%d; error against a sorted over of every fragment, and difference from the offline picture of the method\n",
+        width, height);
     std::printf("| transparent bin | RMSE | offline: mean | offline: pixels off by more than .01 | ms a frame |\n");
     std::printf("| --- | --- | --- | --- | --- |\n");
     const osg::ref_ptr<osg::Group> graph = graphOf(scene);
@@ -362,7 +370,8 @@ int main(int count, char** arguments) {
       const double pixels = static_cast<double>(width) * height;
       if (off.mean > row.mean || static_cast<double>(off.stray) > std::max(4.0, 2e-4 * pixels))
         stop(std::string(row.name) + ": not the offline picture; expected to differ by " + row.why + " alone");
-      // The bins that neither bend nor blur approach the sorted over; OpenSceneGraph's has one opacity for all channels.
+      // The bins that neither bend nor blur approach the sorted over; OpenSceneGraph's has one opacity for all
+      // channels.
       if (!row.scatters && error.rmse > 0.5 * theirs.rmse)
         stop(std::string(row.name) + " is not twice as near to the truth as OpenSceneGraph's own bin");
     }

@@ -25,8 +25,8 @@ class KeptDepth : public osg::Depth {
   void apply(osg::State&) const override {}
 };
 
-// OpenSceneGraph remembers what it has set last, and pld_end() puts back what pld_begin() found: so that both agree, the
-// state of the top of the graph is set before either.
+// OpenSceneGraph remembers what it has set last, and pld_end() puts back what pld_begin() found: so that both agree,
+// the state of the top of the graph is set before either.
 void applyTop(osg::State& state, osgUtil::RenderLeaf*& previous) {
   if (previous) osgUtil::StateGraph::moveToRootStateGraph(state, previous->_parent);
   previous = nullptr;
@@ -77,8 +77,8 @@ void PellucidBin::create(osg::State& state, int width, int height) {
     check(pld_glsl(pass_, stage, 330, &seam));
     Stage one{stage, new osg::Program, new osg::StateSet};
     one.program->addShader(new osg::Shader(osg::Shader::VERTEX, settings_.vertex));
-    one.program->addShader(
-        new osg::Shader(osg::Shader::FRAGMENT, "#version 330 compatibility\n" + std::string(seam) + settings_.fragment));
+    one.program->addShader(new osg::Shader(osg::Shader::FRAGMENT,
+                                           "#version 330 compatibility\n" + std::string(seam) + settings_.fragment));
     one.program->compileGLObjects(state);
     check(pld_connect(pass_, one.program->getPCP(state)->getHandle()));
     constexpr auto always = osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE;

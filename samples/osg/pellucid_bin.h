@@ -1,10 +1,10 @@
 // OpenSceneGraph's bin of transparent things, drawn by Pellucid: through its C header alone.
 #pragma once
+#include <pellucid/pellucid.h>
 #include <osg/Program>
 #include <osg/StateSet>
 #include <osg/Texture2D>
 #include <osgUtil/RenderBin>
-#include <pellucid/pellucid.h>
 
 #include <string>
 #include <utility>

@@ -52,7 +52,8 @@ Part opaque(const Mesh& mesh, glm::vec3 colour) {
   return part;
 }
 
-Part glass(const std::string& name, const Mesh& mesh, glm::vec3 colour, float roughness = 0.0f, float thickness = 0.0f) {
+Part glass(const std::string& name, const Mesh& mesh, glm::vec3 colour, float roughness = 0.0f,
+           float thickness = 0.0f) {
   Part part = opaque(mesh, colour);
   part.name = name;
   part.transmission = 1.0f;
@@ -89,7 +90,8 @@ Scene stillLife(int width, int height) {
   scene.transparent.push_back(glass("blue", sphere({0.0, 0.34, -0.12}, 0.16), {0.35f, 0.5f, 0.98f}));
   scene.transparent.push_back(glass("yellow", pane({-0.45, 0.001, 0.05}, 0.34, 0.36, 0.7), {0.98f, 0.85f, 0.2f}));
   scene.transparent.push_back(glass("cyan", pane({-0.45, 0.001, 0.05}, 0.34, 0.44, -0.5), {0.2f, 0.85f, 0.9f}));
-  scene.transparent.push_back(glass("frosted", pane({0.52, 0.001, -0.25}, 0.42, 0.46, -0.25), {0.95f, 0.97f, 0.98f}, 0.5f));
+  scene.transparent.push_back(
+      glass("frosted", pane({0.52, 0.001, -0.25}, 0.42, 0.46, -0.25), {0.95f, 0.97f, 0.98f}, 0.5f));
   scene.transparent.push_back(glass("ball", sphere({0.33, 0.22, 0.3}, 0.12), {0.97f, 0.99f, 0.98f}, 0.0f, 0.2f));
   Part haze = opaque(pane({0.0, 0.001, 0.0}, 0.9, 0.14, 0.25), {0.9f, 0.88f, 0.84f});
   haze.name = "haze";

@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint32_t kCards = 160;
 
 // Cards that lean back, so that the eye and the sun both see their faces.
-const glm::dvec3 kAcross(1.0, 0.0, 0.0), kAlong(0.0, glm::one_over_root_two<double>(), -glm::one_over_root_two<double>());
+const glm::dvec3 kAcross(1.0, 0.0, 0.0),
+    kAlong(0.0, glm::one_over_root_two<double>(), -glm::one_over_root_two<double>());
 
 // Lit cards with one normal for all: what form the cloud has comes from its own shadow.
 void addLitCloud(Glb& glb, glm::dvec3 centre, glm::dvec3 reach) {

@@ -19,9 +19,9 @@ void addWindow(std::vector<Shape>& shapes) {
   box({-2.2, 2.5, -1.9}, {-2.0, 3.0, -0.3}, plaster);
   for (const double z : {-1.4, -0.87}) box({-2.13, 1.0, z}, {-2.05, 2.5, z + 0.07}, paint);
   box({-2.13, 1.72, -1.9}, {-2.05, 1.79, -0.3}, paint);
-  box({-2.2, 3.0, -3.2}, {2.6, 3.2, 3.0}, plaster);    // ceiling
-  box({-2.2, 0.0, -3.2}, {2.6, 3.0, -3.0}, plaster);   // back
-  box({2.4, 0.0, -3.0}, {2.6, 3.0, 3.0}, plaster);     // right
+  box({-2.2, 3.0, -3.2}, {2.6, 3.2, 3.0}, plaster);   // ceiling
+  box({-2.2, 0.0, -3.2}, {2.6, 3.0, -3.0}, plaster);  // back
+  box({2.4, 0.0, -3.0}, {2.6, 3.0, 3.0}, plaster);    // right
 }
 
 }  // namespace
@@ -46,24 +46,30 @@ Sample shafts() {
   addWindow(studio.shapes);
 
   Glb& glb = sample.glb;
-  const int leaf = glb.addMaterial(
-      {{"name", "leaf"},
-       {"doubleSided", true},
-       {"alphaMode", "MASK"},
-       {"alphaCutoff", 0.5},
-       {"pbrMetallicRoughness",
-        {{"baseColorTexture", {{"index", glb.addTexture("leaf", encodePng(leafMask(128)))}}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}}});
+  const int leaf =
+      glb.addMaterial({{"name", "leaf"},
+                       {"doubleSided", true},
+                       {"alphaMode", "MASK"},
+                       {"alphaCutoff", 0.5},
+                       {"pbrMetallicRoughness",
+                        {{"baseColorTexture", {{"index", glb.addTexture("leaf", encodePng(leafMask(128)))}}},
+                         {"metallicFactor", 0.0},
+                         {"roughnessFactor", 0.9}}}});
   glb.addMesh("plant", meshOf(crown({0.05, 1.12, -1.15}, 0.34, 220, 0.15, 11)), leaf);
   nlohmann::json green = glass("vase", glm::dvec3(1.0), 1.45, 0.08);
   green["extensions"]["KHR_materials_volume"] = {
       {"thicknessFactor", 0.004}, {"attenuationDistance", 0.004}, {"attenuationColor", {0.35, 0.8, 0.45}}};
-  const std::vector<glm::dvec2> profile = {{0.0, 0.02}, {0.09, 0.01}, {0.13, 0.06}, {0.14, 0.2}, {0.1, 0.34}, {0.05, 0.42}, {0.05, 0.5}, {0.07, 0.54}};
+  const std::vector<glm::dvec2> profile = {{0.0, 0.02}, {0.09, 0.01}, {0.13, 0.06}, {0.14, 0.2},
+                                           {0.1, 0.34}, {0.05, 0.42}, {0.05, 0.5},  {0.07, 0.54}};
   glb.addMesh("vase", lathe(profile, 4, 48), glb.addMaterial(green), {0.62, 0.6, -1.0});
-  glb.addMesh("pane", [] {
-    Mesh pane;
-    addQuad(pane, {-2.1, 1.0, -0.3}, {0.0, 0.0, -1.6}, {0.0, 1.5, 0.0});
-    return pane;
-  }(), glb.addMaterial(glass("pane", {0.96, 0.97, 0.96}, 1.0, 0.0)));
+  glb.addMesh(
+      "pane",
+      [] {
+        Mesh pane;
+        addQuad(pane, {-2.1, 1.0, -0.3}, {0.0, 0.0, -1.6}, {0.0, 1.5, 0.0});
+        return pane;
+      }(),
+      glb.addMaterial(glass("pane", {0.96, 0.97, 0.96}, 1.0, 0.0)));
   addSolids(glb, studio.shapes);
   glb.addCamera("cam", sample.view);
   glb.addSun("sun", studio.toSun, studio.sunIrradiance);

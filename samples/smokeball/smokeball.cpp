@@ -38,7 +38,11 @@ Sample smokeBall(std::uint32_t particles) {
   studio.ambient = {0.08, 0.1, 0.13};
   studio.sky = [](glm::dvec3) { return glm::dvec3(0.08, 0.1, 0.13); };
   studio.shapes = {
-      {ShapeKind::box, {0.0, -0.05, 0.0}, {12.0, 0.05, 12.0}, 0.0, checker({0.34, 0.33, 0.31}, {0.24, 0.24, 0.23}, 0.5)},
+      {ShapeKind::box,
+       {0.0, -0.05, 0.0},
+       {12.0, 0.05, 12.0},
+       0.0,
+       checker({0.34, 0.33, 0.31}, {0.24, 0.24, 0.23}, 0.5)},
       {ShapeKind::box, {-0.75, 1.35, 0.3}, {0.22, 0.22, 0.22}, 0.4, plain({0.7, 0.25, 0.12})},
   };
   const double size = 0.2 * std::cbrt(1000.0 / particles);
@@ -47,7 +51,8 @@ Sample smokeBall(std::uint32_t particles) {
   const int material = sample.glb.addMaterial(
       {{"name", "smoke"},
        {"alphaMode", "BLEND"},
-       {"pbrMetallicRoughness", {{"baseColorFactor", {0.92, 0.92, 0.95, 1.0 - std::exp(-depth)}}, {"metallicFactor", 0.0}}},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.92, 0.92, 0.95, 1.0 - std::exp(-depth)}}, {"metallicFactor", 0.0}}},
        {"extras", {{"pellucid", {{"phase", 0.2}}}}}});
   sample.glb.addPoints("smoke", smokeOf(particles, {0.1, 0.95, 0.0}, 0.78, size), material);
   addSolids(sample.glb, studio.shapes);

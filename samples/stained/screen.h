@@ -1,4 +1,5 @@
-// A folding screen of coloured panes in the sun and a pane behind it, for the host to draw and as a glTF for `pellucid composite`.
+// A folding screen of coloured panes in the sun and a pane behind it, for the host to draw and as a glTF for `pellucid
+// composite`.
 #pragma once
 #include <glm/glm.hpp>
 #include <string>
@@ -19,8 +20,8 @@ struct View {
 
 constexpr float kIor = 1.5f;
 const glm::vec3 kToSun = glm::normalize(glm::vec3(-0.45f, 0.95f, -0.8f));
-constexpr glm::vec3 kSun{3.4f, 3.2f, 2.8f};         // W/m^2 on a plane that faces it
-constexpr glm::vec3 kAround{0.35f, 0.38f, 0.42f};   // radiance of the surroundings
+constexpr glm::vec3 kSun{3.4f, 3.2f, 2.8f};        // W/m^2 on a plane that faces it
+constexpr glm::vec3 kAround{0.35f, 0.38f, 0.42f};  // radiance of the surroundings
 
 std::vector<Pane> screen();
 // The panes, the camera and the sun. Throws std::runtime_error when it cannot be written.

@@ -1,10 +1,11 @@
-// Coloured shadows through the C library: the sun's map of what is transparent, asked by the light pass. Of Pellucid the host
-// includes the public header alone.
+// Coloured shadows through the C library: the sun's map of what is transparent, asked by the light pass. Of Pellucid
+// the host includes the public header alone.
 //
 //   stained OUTDIR [WIDTHxHEIGHT]
 //
-// Writes OUTDIR/glass.glb and OUTDIR/opaque.exr, what `pellucid composite --shadows exact` takes (the floor without shadows, the
-// sun's part in layers of its own), OUTDIR/frame.exr, the same by the library, and OUTDIR/map.exr, what its map leaves of the sun.
+// Writes OUTDIR/glass.glb and OUTDIR/opaque.exr, what `pellucid composite --shadows exact` takes (the floor without
+// shadows, the sun's part in layers of its own), OUTDIR/frame.exr, the same by the library, and OUTDIR/map.exr, what
+// its map leaves of the sun.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -196,7 +197,9 @@ class Host {
     check(pld_query(pass_, PLD_VALUE_SHADOW_BUFFER, &mapTable_), pass_);
   }
 
-  static void set(GLuint name, const char* uniform, glm::vec3 value) { glUniform3fv(glGetUniformLocation(name, uniform), 1, &value.x); }
+  static void set(GLuint name, const char* uniform, glm::vec3 value) {
+    glUniform3fv(glGetUniformLocation(name, uniform), 1, &value.x);
+  }
 
   void use(GLuint name, const glm::mat4& clipFromView, const glm::mat4& viewFromWorld) const {
     glUseProgram(name);
@@ -295,12 +298,13 @@ class Host {
   }
 
   // Rows run up on the device. Of `floor`, colour is the sun's and alpha depth: 5 channels take that, 8 both.
-  static void save(const std::string& path, int width, int height, const std::vector<float>& colour, const std::vector<float>& floor,
-                   int channels) {
+  static void save(const std::string& path, int width, int height, const std::vector<float>& colour,
+                   const std::vector<float>& floor, int channels) {
     std::vector<float> rows;
     for (int y = height - 1; y >= 0; --y)
       for (int x = 0; x < width; ++x) {
-        const auto at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+        const auto at =
+            4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
         rows.insert(rows.end(), &colour[at], &colour[at] + 4);
         if (channels > 4) rows.push_back(floor[at + 3] > 0.0f ? floor[at + 3] : INFINITY);
         if (channels > 5) rows.insert(rows.end(), &floor[at], &floor[at] + 3);
@@ -336,7 +340,8 @@ void makeContext() {
 
 int main(int count, char** arguments) {
   int width = 640, height = 360;
-  if (count < 2 || count > 3 || (count > 2 && (std::sscanf(arguments[2], "%dx%d", &width, &height) != 2 || width < 1 || height < 1))) {
+  if (count < 2 || count > 3 ||
+      (count > 2 && (std::sscanf(arguments[2], "%dx%d", &width, &height) != 2 || width < 1 || height < 1))) {
     std::fprintf(stderr, "stained OUTDIR [WIDTHxHEIGHT]\n");
     return 2;
   }

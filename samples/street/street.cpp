@@ -59,15 +59,21 @@ Sample street() {
   studio.sky = [](glm::dvec3 fromEye) {
     return glm::mix(glm::dvec3(0.55, 0.42, 0.36), glm::dvec3(0.12, 0.17, 0.3), std::clamp(2.0 * fromEye.y, 0.0, 1.0));
   };
-  studio.shapes = {{ShapeKind::box, {0.0, -0.05, -20.0}, {40.0, 0.05, 40.0}, 0.0,
+  studio.shapes = {{ShapeKind::box,
+                    {0.0, -0.05, -20.0},
+                    {40.0, 0.05, 40.0},
+                    0.0,
                     checker({0.2, 0.2, 0.21}, {0.16, 0.16, 0.17}, 0.8)}};
   addHouses(studio.shapes);
   std::vector<PuffCard> halos;
   for (int i = 0; i < kLamps; ++i)
     for (int side : {-1, 1}) {
       const double x = side * kLampX, z = lampZ(i);
-      studio.shapes.push_back(
-          {ShapeKind::cylinder, {x, 0.5 * kLampHeight, z}, {0.06, 0.5 * kLampHeight, 0.0}, 0.0, plain({0.05, 0.05, 0.06})});
+      studio.shapes.push_back({ShapeKind::cylinder,
+                               {x, 0.5 * kLampHeight, z},
+                               {0.06, 0.5 * kLampHeight, 0.0},
+                               0.0,
+                               plain({0.05, 0.05, 0.06})});
       studio.shapes.push_back({ShapeKind::sphere, {x, kLampHeight, z}, {0.16, 0.0, 0.0}, 0.0, plain({1.0, 0.95, 0.8})});
       halos.push_back({{x, kLampHeight, z + 0.3}, 1.7, {0.5, 0.34, 0.15}});
     }

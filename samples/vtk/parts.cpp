@@ -100,7 +100,8 @@ void Scene::writeGlb(const std::string& path) const {
     return doc["bufferViews"].size() - 1;
   };
   const std::uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
-  doc["accessors"].push_back({{"bufferView", view(indices, sizeof indices)}, {"componentType", 5125}, {"count", 6}, {"type", "SCALAR"}});
+  doc["accessors"].push_back(
+      {{"bufferView", view(indices, sizeof indices)}, {"componentType", 5125}, {"count", 6}, {"type", "SCALAR"}});
   for (const Part& part : parts) {
     float corners[4][3], least[3] = {1e9f, 1e9f, 1e9f}, most[3] = {-1e9f, -1e9f, -1e9f};
     for (int i = 0; i < 4; ++i) {
@@ -111,14 +112,22 @@ void Scene::writeGlb(const std::string& path) const {
         least[k] = std::min(least[k], corners[i][k]), most[k] = std::max(most[k], corners[i][k]);
       }
     }
-    doc["accessors"].push_back({{"bufferView", view(corners, sizeof corners)}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"},
-                                {"min", {least[0], least[1], least[2]}}, {"max", {most[0], most[1], most[2]}}});
+    doc["accessors"].push_back({{"bufferView", view(corners, sizeof corners)},
+                                {"componentType", 5126},
+                                {"count", 4},
+                                {"type", "VEC3"},
+                                {"min", {least[0], least[1], least[2]}},
+                                {"max", {most[0], most[1], most[2]}}});
     json colour = json::array();
     for (const unsigned char c : part.colour) colour.push_back(c / 255.0);
-    doc["materials"].push_back({{"alphaMode", "BLEND"}, {"doubleSided", true}, {"pbrMetallicRoughness", {{"baseColorFactor", colour}}},
+    doc["materials"].push_back({{"alphaMode", "BLEND"},
+                                {"doubleSided", true},
+                                {"pbrMetallicRoughness", {{"baseColorFactor", colour}}},
                                 {"extensions", {{"KHR_materials_unlit", json::object()}}}});
-    doc["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", doc["accessors"].size() - 1}}}, {"indices", 0},
-                                              {"material", doc["materials"].size() - 1}}}}});
+    doc["meshes"].push_back({{"primitives",
+                              {{{"attributes", {{"POSITION", doc["accessors"].size() - 1}}},
+                                {"indices", 0},
+                                {"material", doc["materials"].size() - 1}}}}});
     roots.push_back(nodes.size());
     nodes.push_back({{"mesh", doc["meshes"].size() - 1}});
   }
@@ -144,8 +153,9 @@ void Scene::writeGlb(const std::string& path) const {
 void Scene::writeWall(const std::string& path) const {
   std::vector<float> texels;
   for (int i = 0; i < width * height; ++i)
-    texels.insert(texels.end(), {static_cast<float>(wall.colour[0]) / 255.0f, static_cast<float>(wall.colour[1]) / 255.0f,
-                                 static_cast<float>(wall.colour[2]) / 255.0f, 1.0f, 20.0f});
+    texels.insert(texels.end(),
+                  {static_cast<float>(wall.colour[0]) / 255.0f, static_cast<float>(wall.colour[1]) / 255.0f,
+                   static_cast<float>(wall.colour[2]) / 255.0f, 1.0f, 20.0f});
   OIIO::ImageSpec spec(width, height, 5, OIIO::TypeDesc::FLOAT);
   spec.channelnames = {"R", "G", "B", "A", "Z"};
   const auto file = OIIO::ImageOutput::create(path);

@@ -9,8 +9,12 @@ namespace pellucid::vtksample {
 struct Vec {
   double x = 0, y = 0, z = 0;
 };
-inline Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec operator*(double s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Vec operator+(Vec a, Vec b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec operator*(double s, Vec a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 
 // A rectangle: its corners are centre +- across +- up. View space is world space: the eye at 0 looks down -z.
 struct Part {

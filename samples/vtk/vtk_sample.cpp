@@ -1,12 +1,13 @@
-// VTK 9.1 with Pellucid in place of its translucent pass, beside VTK's own: error against a sorted double-precision `over`,
-// and time a frame.
+// VTK 9.1 with Pellucid in place of its translucent pass, beside VTK's own: error against a sorted double-precision
+// `over`, and time a frame.
 //
 //   vtk_sample OUTDIR [--parts N] [--size WxH] [--frames N] [--weight EXPONENT:NEAR:FAR] [--write-scene]
 //              [--processor-time]
 //
 // --processor-time: what a CPU rasteriser takes of the processor, not what passes on the clock; for busy machines, with
 // LP_NUM_THREADS=0 in the environment, so that no rasteriser thread waits for another.
-// --write-scene writes OUTDIR/parts.glb and OUTDIR/wall.exr and ends: what `pellucid composite --weight auto` fits a weight to.
+// --write-scene writes OUTDIR/parts.glb and OUTDIR/wall.exr and ends: what `pellucid composite --weight auto` fits a
+// weight to.
 #include <vtk_glew.h>
 
 #include <pellucid/pellucid.h>
@@ -77,8 +78,8 @@ double now() {
   std::exit(1);
 }
 
-// In place of VTK's translucent pass: every translucent prop is drawn by VTK's own shaders, whose colour goes through the
-// seam instead of into the framebuffer.
+// In place of VTK's translucent pass: every translucent prop is drawn by VTK's own shaders, whose colour goes through
+// the seam instead of into the framebuffer.
 class PellucidPass : public vtkOpenGLRenderPass {
  public:
   static PellucidPass* New();
@@ -146,7 +147,8 @@ class PellucidPass : public vtkOpenGLRenderPass {
   // A pass that is drawn with another stage is another text.
   vtkMTimeType GetShaderStageMTime() override { return stageTime_.GetMTime(); }
 
-  bool PostReplaceShaderValues(std::string&, std::string&, std::string& fragment, vtkAbstractMapper*, vtkProp*) override {
+  bool PostReplaceShaderValues(std::string&, std::string&, std::string& fragment, vtkAbstractMapper*,
+                               vtkProp*) override {
     std::string& seam = seams_[stage_];
     if (seam.empty()) {
       const char* text = nullptr;
@@ -154,10 +156,12 @@ class PellucidPass : public vtkOpenGLRenderPass {
       seam = text;
     }
     if (bare) seam = "layout(location = 0) out vec4 first;\nlayout(location = 1) out vec2 second;\n";
-    replace(fragment, "//VTK::System::Dec",
-            "#version 330\n#define highp\n#define mediump\n#define lowp\n#define varying in\n#define texture1D texture\n"
-            "#define texture2D texture\n#define texture3D texture\n#define texelFetchBuffer texelFetch\nvec4 hostColour;\n" +
-                seam);
+    replace(
+        fragment, "//VTK::System::Dec",
+        "#version 330\n#define highp\n#define mediump\n#define lowp\n#define varying in\n#define texture1D texture\n"
+        "#define texture2D texture\n#define texture3D texture\n#define texelFetchBuffer texelFetch\nvec4 "
+        "hostColour;\n" +
+            seam);
     const char* writes = bare ? "first = hostColour;\nsecond = hostColour.aa;\n"
                               : "pldWriteFragment(pldSurface(hostColour.rgb * hostColour.a, hostColour.a, vec3(0.0), "
                                 "vec3(0.0, 0.0, -1.0 / gl_FragCoord.w)));\n";
@@ -167,7 +171,8 @@ class PellucidPass : public vtkOpenGLRenderPass {
     return true;
   }
 
-  bool SetShaderParameters(vtkShaderProgram* program, vtkAbstractMapper*, vtkProp*, vtkOpenGLVertexArrayObject*) override {
+  bool SetShaderParameters(vtkShaderProgram* program, vtkAbstractMapper*, vtkProp*,
+                           vtkOpenGLVertexArrayObject*) override {
     const auto name = static_cast<uint32_t>(program->GetHandle());
     if (connected_.insert(name).second) check(pld_connect(pass_, name));
     return true;
@@ -195,8 +200,10 @@ class PellucidPass : public vtkOpenGLRenderPass {
   }
   static GLint attached(GLenum attachment) {
     GLint kind = 0, name = 0;
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &name);
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
+                                          &kind);
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
+                                          &name);
     if (kind != GL_TEXTURE) stop("VTK's framebuffer holds no texture");
     return name;
   }
@@ -356,7 +363,10 @@ Measured measure(const Scene& scene, vtkRenderPass* translucent, bool sorted, in
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count < 2) stop("vtk_sample OUTDIR [--parts N] [--size WxH] [--frames N] [--weight EXPONENT:NEAR:FAR] [--write-scene] [--processor-time]");
+  if (count < 2)
+    stop(
+        "vtk_sample OUTDIR [--parts N] [--size WxH] [--frames N] [--weight EXPONENT:NEAR:FAR] [--write-scene] "
+        "[--processor-time]");
   const std::string folder = arguments[1];
   int parts = 160, width = 640, height = 360, frames = 9;
   float exponent = 3.0f, weightNear = 0.1f, weightFar = 100.0f;
@@ -393,7 +403,8 @@ int main(int count, char** arguments) {
   Measured results[6];
   const auto row = [&](int place, const char* name, vtkRenderPass* pass, bool sorted) {
     results[place] = measure(scene, pass, sorted, frames, folder + "/vtk" + std::to_string(place) + ".png");
-    std::printf("| %s | %.5f | %.3f | %.1f |\n", name, results[place].rmse, results[place].largest, results[place].milliseconds);
+    std::printf("| %s | %.5f | %.3f | %.1f |\n", name, results[place].rmse, results[place].largest,
+                results[place].milliseconds);
     std::fflush(stdout);
   };
   vtkNew<vtkTranslucentPass> plain;
@@ -416,9 +427,12 @@ int main(int count, char** arguments) {
   row(4, "Pellucid phenomenological, eq5", phenomenological, false);
   row(5, "(the planes of weighted, nothing computed)", bare, false);
   const double error = results[2].rmse / results[0].rmse, nearer = results[0].rmse / results[3].rmse;
-  std::printf("weighted: %.2f of VTK's error in %.2f of its time (aims: 1, 1); front+tail: %.2f times nearer in %.2f of its time "
-              "(aims: 2, 2.5)\n",
-              error, results[2].milliseconds / results[0].milliseconds, nearer, results[3].milliseconds / results[0].milliseconds);
+  std::printf(
+      "weighted: %.2f of VTK's error in %.2f of its time (aims: 1, 1); front+tail: %.2f times nearer in %.2f of its "
+      "time "
+      "(aims: 2, 2.5)\n",
+      error, results[2].milliseconds / results[0].milliseconds, nearer,
+      results[3].milliseconds / results[0].milliseconds);
   // Times are for the table: the machine under a test is not a quiet one.
   if (error > 1) stop("weighted is farther from the truth than VTK's pass");
   if (nearer < 2) stop("front+tail is not twice as near to the truth as VTK's pass");

@@ -36,11 +36,14 @@ struct Projection {
 
 TEST(DeviceDepth, EveryConventionComesBack) {
   constexpr double zNear = 0.1, zFar = 500.0;
-  const Convention conventions[] = {
-      {"-1..1", false, false, false, false},         {"0..1", true, false, false, false},
-      {"0..1 reversed", true, true, false, false},   {"0..1 infinite", true, false, true, false},
-      {"0..1 reversed infinite", true, true, true, false}, {"-1..1 orthographic", false, false, false, true},
-      {"0..1 orthographic", true, false, false, true}, {"0..1 reversed orthographic", true, true, false, true}};
+  const Convention conventions[] = {{"-1..1", false, false, false, false},
+                                    {"0..1", true, false, false, false},
+                                    {"0..1 reversed", true, true, false, false},
+                                    {"0..1 infinite", true, false, true, false},
+                                    {"0..1 reversed infinite", true, true, true, false},
+                                    {"-1..1 orthographic", false, false, false, true},
+                                    {"0..1 orthographic", true, false, false, true},
+                                    {"0..1 reversed orthographic", true, true, false, true}};
   for (const Convention& convention : conventions) {
     const Projection projection(convention, zNear, zFar);
     const float scale = convention.zeroToOne ? 1.0f : 2.0f, offset = convention.zeroToOne ? 0.0f : -1.0f;
@@ -53,11 +56,13 @@ TEST(DeviceDepth, EveryConventionComesBack) {
       const double window = (projection.ndc(z) - static_cast<double>(offset)) / static_cast<double>(scale);
       ASSERT_GE(window, 0.0) << convention.name;
       ASSERT_LE(window, 1.0) << convention.name;
-      const double found = static_cast<double>(shading::planarFromDevice(rows, static_cast<float>(window), scale, offset, empty));
+      const double found =
+          static_cast<double>(shading::planarFromDevice(rows, static_cast<float>(window), scale, offset, empty));
       // A float depth knows 2^-24 of its range, and two or three roundings follow; the slope turns that into metres.
       const double step = 3e-7;
       const double slope = std::abs(projection.ndc(z * 1.0001) - projection.ndc(z)) / (z * 1e-4);
-      const double allowed = convention.reversed && !convention.orthographic && convention.infinite ? 3e-7 * z : step / slope + 3e-7 * z;
+      const double allowed =
+          convention.reversed && !convention.orthographic && convention.infinite ? 3e-7 * z : step / slope + 3e-7 * z;
       worst = std::max(worst, std::abs(found - z) / allowed);
     }
     std::printf("%s: %.2f of the allowed error\n", convention.name, worst);

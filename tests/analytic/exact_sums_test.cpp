@@ -21,8 +21,8 @@ float summed(const std::vector<float>& terms) {
   return shading::roundedSums(sums).x;
 }
 
-// Without any rounding, as doubles that do not overlap (Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997), the
-// largest last; then to the nearest float, ties to even.
+// Without any rounding, as doubles that do not overlap (Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997),
+// the largest last; then to the nearest float, ties to even.
 float trueSum(const std::vector<float>& terms) {
   std::vector<double> parts;
   for (const float term : terms) {
@@ -66,10 +66,12 @@ TEST(ExactSums, RandomTermsOverTwentyDecadesGiveTheTrueSumInAnyOrder) {
     float inTurn = 0;
     for (const float term : terms) inTurn += term;
     plain += !sameBits(truth, inTurn);
-    for (std::size_t k = terms.size(); k > 1; --k) std::swap(terms[k - 1], terms[random.below(static_cast<std::uint32_t>(k))]);
+    for (std::size_t k = terms.size(); k > 1; --k)
+      std::swap(terms[k - 1], terms[random.below(static_cast<std::uint32_t>(k))]);
     moved += !sameBits(found, summed(terms));
   }
-  std::printf("%d sums: %zu are not the true sum rounded (added in float: %zu), %zu change with the order\n", kCases, off, plain, moved);
+  std::printf("%d sums: %zu are not the true sum rounded (added in float: %zu), %zu change with the order\n", kCases,
+              off, plain, moved);
   EXPECT_EQ(off, 0u);
   EXPECT_EQ(moved, 0u);
   EXPECT_GT(plain, kCases / 4u);

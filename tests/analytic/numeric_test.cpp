@@ -42,16 +42,19 @@ TEST(Numeric, PowersWithinTheirBounds) {
   double log2 = 0, exp2 = 0, power = 0;
   Random random(5);
   for (int i = 0; i < 200000; ++i) {
-    const float x = static_cast<float>(std::exp(random.between(-80, 80))), y = static_cast<float>(random.between(-126, 126));
+    const float x = static_cast<float>(std::exp(random.between(-80, 80))),
+                y = static_cast<float>(random.between(-126, 126));
     const double truth = std::log2(static_cast<double>(x));
     log2 = std::max(log2, std::abs(static_cast<double>(shading::pldLog2(x)) - truth) / std::max(std::abs(truth), 4.0));
     exp2 = std::max(exp2, std::abs(static_cast<double>(shading::pldExp2(y)) / std::exp2(static_cast<double>(y)) - 1));
-    const float z = static_cast<float>(std::pow(10.0, random.between(-2, 4))), k = static_cast<float>(random.between(0, 4));
+    const float z = static_cast<float>(std::pow(10.0, random.between(-2, 4))),
+                k = static_cast<float>(random.between(0, 4));
     const double weight = std::pow(static_cast<double>(z), static_cast<double>(-k));
     if (weight > 2e-12 && weight < 5e11)
       power = std::max(power, std::abs(static_cast<double>(shading::weightPower(z, k)) / weight - 1));
   }
-  printf("[ figure ] log2: worst error %.2g of the larger of 4 and the value; exp2: %.2g; z^-k, 1e-12 to 1e12: %.2g\n", log2, exp2, power);
+  printf("[ figure ] log2: worst error %.2g of the larger of 4 and the value; exp2: %.2g; z^-k, 1e-12 to 1e12: %.2g\n",
+         log2, exp2, power);
   EXPECT_LT(log2, 7.5e-8);
   EXPECT_LT(exp2, 2e-7);
   EXPECT_LT(power, 5e-6);  // a rounding of the exponent, up to 40, times ln 2

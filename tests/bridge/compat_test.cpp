@@ -12,7 +12,8 @@ namespace {
 // As hosts have it that ask for no profile.
 class CompatibleContext {
  public:
-  CompatibleContext() : display_(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)) {
+  CompatibleContext()
+      : display_(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)) {
     EXPECT_TRUE(eglInitialize(display_, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API));
     context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
     EXPECT_TRUE(eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_));
@@ -78,8 +79,8 @@ TEST(BridgeCompatibility, DrawsWithWhatWasBoundBeforeBegin) {
   const GlState before = glState();
   ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
   EXPECT_EQ(changes(before, glState()).size(), 0u);
-  // Two layers, one of low resolution, of light .1 green and net coverage .25 over the picture's .5, .4, .3: their mean is
-  // .1 / .25.
+  // Two layers, one of low resolution, of light .1 green and net coverage .25 over the picture's .5, .4, .3: their mean
+  // is .1 / .25.
   const std::vector<float> picture = host.picture();
   constexpr float left = 0.75f * 0.75f;
   EXPECT_NEAR(picture[0], 0.5f * left, 1e-6f);
@@ -100,7 +101,8 @@ TEST(BridgeCompatibility, DrawsWithWhatWasBoundBeforeBegin) {
   ASSERT_EQ(pld_shadow_end(pass), PLD_OK) << pld_message(pass);
   EXPECT_EQ(changes(bound, glState()).size(), 0u);
   const std::vector<float> under = askShadows(pass, room, 0, {0, 0, -5, 0}, true);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(under[static_cast<std::size_t>(c)], 1.0f - 0.5f * (0.75f - 0.25f * static_cast<float>(c)), 1e-3f);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(under[static_cast<std::size_t>(c)], 1.0f - 0.5f * (0.75f - 0.25f * static_cast<float>(c)), 1e-3f);
   // A texture of another kind is refused here too, where the driver does not say of what kind a texture is.
   pld_frame wrong = frame;
   glCreateTextures(GL_TEXTURE_3D, 1, &wrong.depth_texture);

@@ -13,19 +13,21 @@ namespace {
 struct Shot {
   const char* sample;
   const char* method;
-  double mean;       // difference over the other pixels, at most
-  double stray;      // part of the pixels that may be off by more than .01; four may anyway
+  double mean;   // difference over the other pixels, at most
+  double stray;  // part of the pixels that may be off by more than .01; four may anyway
   const char* why;
 };
-// 198 rows: at 180, edges of the bars pass through pixel centres, where the side that rows run to decides who owns them.
-// Attributes are interpolated by other shaders, so edges and footprints of lookups fall differently on a few pixels.
+// 198 rows: at 180, edges of the bars pass through pixel centres, where the side that rows run to decides who owns
+// them. Attributes are interpolated by other shaders, so edges and footprints of lookups fall differently on a few
+// pixels.
 const Shot kShots[] = {
     {"bars", "weighted", 1e-7, 1e-4, "pixels at edges"},
     {"bars", "front+tail", 1e-7, 1e-4, "pixels at edges"},
     {"ball", "phenomenological", 3e-6, 2e-4, "pixels at edges, and where a refracted lookup meets one"},
     {"bars", "front+tail:exact", 1e-7, 1e-4, "pixels at edges"},
     {"ball", "phenomenological:exact", 3e-6, 2e-4, "pixels at edges, and where a refracted lookup meets one"},
-    {"frosted", "phenomenological", 5e-5, 1e-4, "rows run up in the engine: the spread pyramid's texels lie elsewhere"}};
+    {"frosted", "phenomenological", 5e-5, 1e-4,
+     "rows run up in the engine: the spread pyramid's texels lie elsewhere"}};
 
 TEST(BridgeEngine, FrameEqualsTheOfflineComposite) {
   const std::string folder = freshFolder("bridge-engine");
@@ -40,11 +42,13 @@ TEST(BridgeEngine, FrameEqualsTheOfflineComposite) {
     ASSERT_EQ(drawn.code, 0) << drawn.err;
     const std::string asked = shot.method, method = asked.substr(0, asked.find(':'));
     const bool exact = asked != method && method == "phenomenological";  // the one that the offline program has it for
-    const Ended offline = runProgram({"composite", "opaque.exr", name + ".glb", "-o", "offline.exr", "--aa", "1", "--precision", exact ? "exact" : "float", "--method",
-                                      method, "--environment", "0.35,0.38,0.42", "--weight-range", "0.1:100"},
-                                     options);
+    const Ended offline = runProgram(
+        {"composite", "opaque.exr", name + ".glb", "-o", "offline.exr", "--aa", "1", "--precision",
+         exact ? "exact" : "float", "--method", method, "--environment", "0.35,0.38,0.42", "--weight-range", "0.1:100"},
+        options);
     ASSERT_EQ(offline.code, 0) << offline.err;
-    const GBuffer frame = readOpaque(folder + "/frame.exr", {}).gbuffer, expected = readOpaque(folder + "/offline.exr", {}).gbuffer,
+    const GBuffer frame = readOpaque(folder + "/frame.exr", {}).gbuffer,
+                  expected = readOpaque(folder + "/offline.exr", {}).gbuffer,
                   opaque = readOpaque(folder + "/opaque.exr", {}).gbuffer;
     ASSERT_EQ(frame.beauty.size(), expected.beauty.size());
     double sum = 0, largest = 0;
@@ -52,7 +56,8 @@ TEST(BridgeEngine, FrameEqualsTheOfflineComposite) {
     for (std::size_t i = 0; i < frame.beauty.size(); ++i) {
       double worst = 0;
       for (int c = 0; c < 4; ++c)
-        worst = std::max(worst, std::abs(static_cast<double>(frame.beauty[i][c]) - static_cast<double>(expected.beauty[i][c])));
+        worst = std::max(
+            worst, std::abs(static_cast<double>(frame.beauty[i][c]) - static_cast<double>(expected.beauty[i][c])));
       if (worst <= 0.01) sum += worst;
       largest = std::max(largest, worst);
       stray += worst > 0.01;
@@ -60,10 +65,12 @@ TEST(BridgeEngine, FrameEqualsTheOfflineComposite) {
       changed += frame.beauty[i] != opaque.beauty[i];
     }
     const auto pixels = static_cast<double>(frame.beauty.size());
-    std::printf("%s, %s: engine against composite: %.4f%% of the pixels off by more than .01 (largest %.2g), the others by %.2g on the average, %.1f%% the same "
-                "bits, %.1f%% under glass (%s)\n",
-                shot.sample, shot.method, 100 * static_cast<double>(stray) / pixels, largest, sum / pixels,
-                100 * static_cast<double>(same) / pixels, 100 * static_cast<double>(changed) / pixels, shot.why);
+    std::printf(
+        "%s, %s: engine against composite: %.4f%% of the pixels off by more than .01 (largest %.2g), the others by "
+        "%.2g on the average, %.1f%% the same "
+        "bits, %.1f%% under glass (%s)\n",
+        shot.sample, shot.method, 100 * static_cast<double>(stray) / pixels, largest, sum / pixels,
+        100 * static_cast<double>(same) / pixels, 100 * static_cast<double>(changed) / pixels, shot.why);
     EXPECT_LT(sum / pixels, shot.mean);
     EXPECT_LT(static_cast<double>(stray), std::max(4.0, shot.stray * pixels));
     EXPECT_GT(static_cast<double>(changed), 0.05 * pixels);

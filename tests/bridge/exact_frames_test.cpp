@@ -1,4 +1,5 @@
-// The exact tier behind a host's own draws: triangles in any order, other methods and stages, and room that does not suffice.
+// The exact tier behind a host's own draws: triangles in any order, other methods and stages, and room that does not
+// suffice.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -167,8 +168,11 @@ class Scene {
     const char* seam = nullptr;
     EXPECT_EQ(pld_glsl(pass, stage, 430, &seam), PLD_OK) << pld_message(pass);
     const std::string first = "#version 430 core\n";
-    const std::string colour = kind_.features & PLD_FEATURE_COLOURED ? "#define COLOUR(t) t\n" : "#define COLOUR(t) vec3(0.9 * t.r)\n";
-    const std::string rims = (kind_.features & PLD_FEATURE_RIMS) && stage != PLD_STAGE_LOW && stage != PLD_STAGE_SOLIDS ? "#define CUT_OUT\n" : "";
+    const std::string colour =
+        kind_.features & PLD_FEATURE_COLOURED ? "#define COLOUR(t) t\n" : "#define COLOUR(t) vec3(0.9 * t.r)\n";
+    const std::string rims = (kind_.features & PLD_FEATURE_RIMS) && stage != PLD_STAGE_LOW && stage != PLD_STAGE_SOLIDS
+                                 ? "#define CUT_OUT\n"
+                                 : "";
     return makeProgram(first + kHash + kVertex, first + (seam ? seam : "") + colour + rims + kHash + kFragment);
   }
 
@@ -184,7 +188,8 @@ std::vector<GLuint> firstTriangles(GLuint count) {
 }
 
 void shuffle(std::vector<GLuint>& order, Random& random) {
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(static_cast<std::uint32_t>(i))]);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[random.below(static_cast<std::uint32_t>(i))]);
 }
 
 std::size_t differing(const std::vector<float>& a, const std::vector<float>& b) {
@@ -202,11 +207,13 @@ double largestDifference(const std::vector<float>& a, const std::vector<float>& 
 }
 
 const Kind kKinds[] = {
-    {"all phenomena, depth test", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, kColoured | kScatter | PLD_FEATURE_SOLIDS, PLD_DEPTH_DEVICE},
+    {"all phenomena, depth test", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT,
+     kColoured | kScatter | PLD_FEATURE_SOLIDS, PLD_DEPTH_DEVICE},
     {"grey, linear depth", PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, 0, PLD_DEPTH_LINEAR},
     {"front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, kColoured | PLD_FEATURE_SOLIDS, PLD_DEPTH_DEVICE},
     {"front+tail, rims", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, PLD_FEATURE_RIMS, PLD_DEPTH_DEVICE},
-    {"rims, low resolution", PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, kColoured | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_DEVICE},
+    {"rims, low resolution", PLD_METHOD_WEIGHTED, PLD_TIER_EXACT,
+     kColoured | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_DEVICE},
     {"rims, low resolution, all phenomena", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT,
      kColoured | kScatter | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_LINEAR}};
 
@@ -237,20 +244,25 @@ TEST(BridgeExactFrames, TrianglesInAnyOrderGiveTheSameBits) {
       shuffle(order, random);
     }
     const double off = largestDifference(blended.picture(), picture);
-    std::printf("exact, drawn, %s: 20 shuffles of 300 triangles, at most %llu fragments a stage: %zu of 20 x %zu words of planes and %zu of pictures "
-                "change (float: %zu in 2); off the float tier's picture by %.2g\n",
-                kind.what, static_cast<unsigned long long>(exact.query(PLD_VALUE_FRAGMENTS)), changed, planes.size(), shown, blendedChanged, off);
+    std::printf(
+        "exact, drawn, %s: 20 shuffles of 300 triangles, at most %llu fragments a stage: %zu of 20 x %zu words of "
+        "planes and %zu of pictures "
+        "change (float: %zu in 2); off the float tier's picture by %.2g\n",
+        kind.what, static_cast<unsigned long long>(exact.query(PLD_VALUE_FRAGMENTS)), changed, planes.size(), shown,
+        blendedChanged, off);
     EXPECT_EQ(changed, 0u) << kind.what;
     EXPECT_EQ(shown, 0u) << kind.what;
     EXPECT_GT(blendedChanged, 100u) << kind.what;
     EXPECT_LT(off, kFloatTolerance) << kind.what;
     EXPECT_GT(differing(picture, readTexture(exact.host.colour, kWidth, kHeight, GL_RGBA)), picture.size() / 3);
-    EXPECT_EQ(exact.query(PLD_VALUE_GEOMETRY_PASSES) + (kind.method == PLD_METHOD_FRONT_TAIL ? 1u : 0u), blended.query(PLD_VALUE_GEOMETRY_PASSES));
+    EXPECT_EQ(exact.query(PLD_VALUE_GEOMETRY_PASSES) + (kind.method == PLD_METHOD_FRONT_TAIL ? 1u : 0u),
+              blended.query(PLD_VALUE_GEOMETRY_PASSES));
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
   }
 }
 
-// What the opaque hides, what the host discards and what no pixel's centre lies in is listed no more than it is blended.
+// What the opaque hides, what the host discards and what no pixel's centre lies in is listed no more than it is
+// blended.
 TEST(BridgeExactFrames, ListsHoldWhatTheFloatTierCounts) {
   GlContext context;
   for (const pld_depth depth : {PLD_DEPTH_DEVICE, PLD_DEPTH_LINEAR}) {
@@ -267,7 +279,8 @@ TEST(BridgeExactFrames, ListsHoldWhatTheFloatTierCounts) {
     double counted = 0;
     for (std::size_t i = 3; i < weights.size(); i += 4) counted += static_cast<double>(weights[i]);
     const uint64_t listed = exact.query(PLD_VALUE_FRAGMENTS);
-    std::printf("exact, depth %d: %llu fragments listed, %.0f blended in the float tier\n", static_cast<int>(depth), static_cast<unsigned long long>(listed), counted);
+    std::printf("exact, depth %d: %llu fragments listed, %.0f blended in the float tier\n", static_cast<int>(depth),
+                static_cast<unsigned long long>(listed), counted);
     EXPECT_EQ(static_cast<double>(listed), counted);
     EXPECT_GT(listed, 5000u);
   }
@@ -354,10 +367,12 @@ void main() { pldWriteLayer(vec3(hash(layer)), 0.01, vec3(0.5), 1.0 + 8.0 * hash
       const auto start = std::chrono::steady_clock::now();
       ASSERT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
       glFinish();
-      milliseconds[deep] = std::min(milliseconds[deep], std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+      milliseconds[deep] =
+          std::min(milliseconds[deep],
+                   std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
-  std::printf("exact, %dx%d: pld_end() takes %.2f ms for 100 layers a pixel, %.1f ms for 1,000: %.0f ns a fragment\n", wide, high, milliseconds[0],
-              milliseconds[1], milliseconds[1] * 1e6 / (wide * high * 1000));
+  std::printf("exact, %dx%d: pld_end() takes %.2f ms for 100 layers a pixel, %.1f ms for 1,000: %.0f ns a fragment\n",
+              wide, high, milliseconds[0], milliseconds[1], milliseconds[1] * 1e6 / (wide * high * 1000));
   uint64_t came = 0;
   EXPECT_EQ(pld_query(pass, PLD_VALUE_FRAGMENTS, &came), PLD_OK);
   EXPECT_EQ(came, uint64_t{wide} * high * 1000);
@@ -365,8 +380,8 @@ void main() { pldWriteLayer(vec3(hash(layer)), 0.01, vec3(0.5), 1.0 + 8.0 * hash
   EXPECT_EQ(pld_destroy(&pass), PLD_OK);
 }
 
-// Layers whose light is one colour wherever they hide: their mean is that colour whatever the weights, so the picture is the
-// sorted one.
+// Layers whose light is one colour wherever they hide: their mean is that colour whatever the weights, so the picture
+// is the sorted one.
 TEST(BridgeExactFrames, LayersOfOneColourAreTheSortedTruth) {
   GlContext context;
   Random random(23);
@@ -402,7 +417,9 @@ TEST(BridgeExactFrames, LayersOfOneColourAreTheSortedTruth) {
       lists.fragments.push_back(fragment);
     }
     lists.offsets.push_back(lists.fragments.size());
-    truths.push_back(reference::sortedOver(layers, {static_cast<double>(background.r), static_cast<double>(background.g), static_cast<double>(background.b)}));
+    truths.push_back(reference::sortedOver(
+        layers,
+        {static_cast<double>(background.r), static_cast<double>(background.g), static_cast<double>(background.b)}));
   }
   Host host(kWidth, kHeight);
   host.upload(gbuffer);
@@ -419,8 +436,11 @@ TEST(BridgeExactFrames, LayersOfOneColourAreTheSortedTruth) {
   double worst = 0;
   for (std::size_t i = 0; i < truths.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      worst = std::max(worst, std::abs(static_cast<double>(picture[4 * i + c]) - truths[i][c]) / std::max(1.0, truths[i][c]));
-  std::printf("exact, layers of one colour against the sorted truth in double: off by %.2g x max(1, value), %zu fragments\n", worst, lists.fragments.size());
+      worst = std::max(worst,
+                       std::abs(static_cast<double>(picture[4 * i + c]) - truths[i][c]) / std::max(1.0, truths[i][c]));
+  std::printf(
+      "exact, layers of one colour against the sorted truth in double: off by %.2g x max(1, value), %zu fragments\n",
+      worst, lists.fragments.size());
   EXPECT_LE(worst, 1e-6);
 }
 
@@ -455,7 +475,8 @@ TEST(BridgeExactFrames, ViewsAndTimersAreThoseOfTheFloatTier) {
     for (int view = PLD_VIEW_LAYER_COUNT; view <= PLD_VIEW_LOW_DEPTH; ++view) {
       const bool whole = kind.features & PLD_FEATURE_LOW_RESOLUTION;  // and rims
       if (!whole && view > PLD_VIEW_SOLID) break;
-      off = std::max(off, largestDifference(blended.picture(static_cast<pld_view>(view)), exact.picture(static_cast<pld_view>(view))));
+      off = std::max(off, largestDifference(blended.picture(static_cast<pld_view>(view)),
+                                            exact.picture(static_cast<pld_view>(view))));
       ++views;
     }
     glFinish();

@@ -76,7 +76,8 @@ Fragment extreme(Random& random, const Case& one) {
   if (!one.coloured) fragment.transmission = glm::vec3(fragment.transmission.r);
   fragment.radiance = glm::vec3(any(radiances), any(radiances), any(radiances));
   fragment.z = random.below(5) ? static_cast<float>(std::pow(10.0, random.between(-2, 2))) : 2.0f;
-  if (one.refracts && random.below(2)) fragment.offset = glm::vec2(40 * random.uniformf() - 20, 30 * random.uniformf() - 15);
+  if (one.refracts && random.below(2))
+    fragment.offset = glm::vec2(40 * random.uniformf() - 20, 30 * random.uniformf() - 15);
   if (one.diffuses && random.below(3) == 0) fragment.variance = 60.0f * random.uniformf();
   return fragment;
 }
@@ -178,7 +179,8 @@ Planes planesOf(const OitPlanes& sums, const Case& one) {
       } else {
         const shading::GreyTargets packed = shading::packGrey(unpacked);
         put(0, packed.radiance);
-        put(1, one.diffuses ? glm::vec4(packed.opacity.x, packed.opacity.y, packed.opacity.w, diffuseZ) : packed.opacity);
+        put(1,
+            one.diffuses ? glm::vec4(packed.opacity.x, packed.opacity.y, packed.opacity.w, diffuseZ) : packed.opacity);
         put(2, glm::vec4(packed.depth, 0, 1));
       }
       if (scatters) put(6, sums.refraction.at(x, y));
@@ -220,7 +222,8 @@ pld_create_info exactInfo(const Host& host, const Case& one) {
 }
 
 std::vector<pld_stage> stagesOf(const Case& one) {
-  return one.solids ? std::vector<pld_stage>{PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS} : std::vector<pld_stage>{PLD_STAGE_LAYERS};
+  return one.solids ? std::vector<pld_stage>{PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS}
+                    : std::vector<pld_stage>{PLD_STAGE_LAYERS};
 }
 
 TEST(BridgeExact, NoOrderChangesABitAndTheBitsAreTheOfflineOnes) {
@@ -256,10 +259,12 @@ TEST(BridgeExact, NoOrderChangesABitAndTheBitsAreTheOfflineOnes) {
     const Difference offline = compare(planesOf(sums, one), first);
     Difference shown;
     compare(std::vector<float>(&expected[0].x, &expected[0].x + 4 * expected.size()), picture, shown);
-    std::printf("exact, %s: %llu fragments, %d shuffles: %zu of %zu words of planes and %zu of pictures differ; against the offline tier %zu of "
-                "%zu words of planes (by %.2g) and %zu of %zu of the picture (by %.2g)\n",
-                one.what, static_cast<unsigned long long>(fragments), one.shuffles, between.words, between.of, pictures.words, offline.words,
-                offline.of, offline.largest, shown.words, shown.of, shown.largest);
+    std::printf(
+        "exact, %s: %llu fragments, %d shuffles: %zu of %zu words of planes and %zu of pictures differ; against the "
+        "offline tier %zu of "
+        "%zu words of planes (by %.2g) and %zu of %zu of the picture (by %.2g)\n",
+        one.what, static_cast<unsigned long long>(fragments), one.shuffles, between.words, between.of, pictures.words,
+        offline.words, offline.of, offline.largest, shown.words, shown.of, shown.largest);
     EXPECT_EQ(between.words, 0u) << one.what;
     EXPECT_EQ(pictures.words, 0u) << one.what;
     EXPECT_EQ(offline.words, 0u) << one.what;

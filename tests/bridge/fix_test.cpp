@@ -1,4 +1,5 @@
-// What a host fixes for all frames: constants in the seam's text give the bits that the block gives, and frames keep to them.
+// What a host fixes for all frames: constants in the seam's text give the bits that the block gives, and frames keep to
+// them.
 #include <gtest/gtest.h>
 
 #include <clocale>
@@ -111,7 +112,8 @@ std::size_t differing(const std::vector<float>& a, const std::vector<float>& b) 
 
 TEST(BridgeFix, ConstantsGiveTheBitsOfTheBlock) {
   GlContext context;
-  constexpr uint32_t all = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION;
+  constexpr uint32_t all = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
+                           PLD_FEATURE_DISPERSION;
   const Case cases[] = {
       {"at depth", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_EQ5, all, PLD_REFRACT_AT_DEPTH, false},
       {"at a distance", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_EQ10Z, all, PLD_REFRACT_AT_DISTANCE, false},
@@ -119,7 +121,8 @@ TEST(BridgeFix, ConstantsGiveTheBitsOfTheBlock) {
       {"not refracted", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_EQ7, all, PLD_REFRACT_NOTHING, false},
       {"weighted", PLD_METHOD_WEIGHTED, PLD_WEIGHT_BY_POWER, 0, PLD_REFRACT_NOTHING, false},
       {"front+tail", PLD_METHOD_FRONT_TAIL, PLD_WEIGHT_BY_POWER, 0, PLD_REFRACT_NOTHING, false},
-      {"exact tier", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_EQ7Z, all, PLD_REFRACT_AT_DISTANCE, true, PLD_TIER_EXACT}};
+      {"exact tier", PLD_METHOD_PHENOMENOLOGICAL, PLD_WEIGHT_BY_EQ7Z, all, PLD_REFRACT_AT_DISTANCE, true,
+       PLD_TIER_EXACT}};
   std::vector<float> last;
   for (const Case& one : cases) {
     const std::vector<float> read = drawn(one, 0), constant = drawn(one, kEverything);
@@ -156,16 +159,19 @@ TEST(BridgeFix, FramesKeepToWhatIsFixed) {
   refused([](auto& f) { f.metres_per_unit = 0; }, PLD_FIXED_UNITS, PLD_ERROR_ARGUMENT, "metres_per_unit");
   refused([](auto& f) { f.pre_exposure = -1; }, PLD_FIXED_EXPOSURE, PLD_ERROR_ARGUMENT, "pre_exposure");
   refused([](auto& f) { f.weight_exponent = nan; }, PLD_FIXED_WEIGHT, PLD_ERROR_ARGUMENT, "exponent");
-  refused([](auto& f) { f.refract = static_cast<pld_refract>(9); }, PLD_FIXED_REFRACTION, PLD_ERROR_ARGUMENT, "refract");
+  refused([](auto& f) { f.refract = static_cast<pld_refract>(9); }, PLD_FIXED_REFRACTION, PLD_ERROR_ARGUMENT,
+          "refract");
   refused([](auto& f) { f.diffusion_k1 = 0; }, PLD_FIXED_DIFFUSION, PLD_ERROR_ARGUMENT, "diffusion_k1");
   refused([](auto& f) { f.projection[11] = 3; }, PLD_FIXED_PROJECTION, PLD_ERROR_ARGUMENT, "projection");
   refused([](auto& f) { f.projection[0] = 0; }, PLD_FIXED_LENS, PLD_ERROR_ARGUMENT, "projection");
   refused([](auto& f) { f.width = 0; }, PLD_FIXED_LENS, PLD_ERROR_SIZE, "0x24");
-  refused([](auto& f) { f.projection[11] = 0, f.projection[15] = 1, f.metres_per_unit = 0; }, PLD_FIXED_LENS, PLD_ERROR_ARGUMENT, "metres_per_unit");
+  refused([](auto& f) { f.projection[11] = 0, f.projection[15] = 1, f.metres_per_unit = 0; }, PLD_FIXED_LENS,
+          PLD_ERROR_ARGUMENT, "metres_per_unit");
   pld_frame nonsense = good;  // of what is not named nothing is read
   nonsense.metres_per_unit = nonsense.diffusion_k1 = nan;
   EXPECT_EQ(pld_fix(pass, &nonsense, PLD_FIXED_WEIGHT), PLD_OK) << pld_message(pass);
-  ASSERT_EQ(pld_fix(pass, &good, kEverything & ~static_cast<uint32_t>(PLD_FIXED_EXPOSURE | PLD_FIXED_LENS)), PLD_OK) << pld_message(pass);
+  ASSERT_EQ(pld_fix(pass, &good, kEverything & ~static_cast<uint32_t>(PLD_FIXED_EXPOSURE | PLD_FIXED_LENS)), PLD_OK)
+      << pld_message(pass);
   const char* seam = nullptr;
   ASSERT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, 450, &seam), PLD_OK);
   EXPECT_EQ(pld_fix(pass, &good, 0), PLD_ERROR_ORDER);

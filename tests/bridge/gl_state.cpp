@@ -14,37 +14,102 @@ struct Named {
 #define PLD_STATE(name) \
   { #name, GL_##name }
 
-constexpr Named kNumbers[] = {
-    PLD_STATE(CURRENT_PROGRAM), PLD_STATE(PROGRAM_PIPELINE_BINDING), PLD_STATE(VERTEX_ARRAY_BINDING),
-    PLD_STATE(ARRAY_BUFFER_BINDING), PLD_STATE(UNIFORM_BUFFER_BINDING), PLD_STATE(SHADER_STORAGE_BUFFER_BINDING),
-    PLD_STATE(ATOMIC_COUNTER_BUFFER_BINDING), PLD_STATE(PIXEL_PACK_BUFFER_BINDING), PLD_STATE(PIXEL_UNPACK_BUFFER_BINDING),
-    PLD_STATE(COPY_READ_BUFFER_BINDING), PLD_STATE(COPY_WRITE_BUFFER_BINDING), PLD_STATE(DRAW_INDIRECT_BUFFER_BINDING),
-    PLD_STATE(TRANSFORM_FEEDBACK_BUFFER_BINDING), PLD_STATE(DRAW_FRAMEBUFFER_BINDING), PLD_STATE(READ_FRAMEBUFFER_BINDING),
-    PLD_STATE(RENDERBUFFER_BINDING), PLD_STATE(ACTIVE_TEXTURE), PLD_STATE(READ_BUFFER), PLD_STATE(DEPTH_FUNC),
-    PLD_STATE(DEPTH_WRITEMASK), PLD_STATE(DEPTH_CLEAR_VALUE), PLD_STATE(STENCIL_FUNC), PLD_STATE(STENCIL_REF),
-    PLD_STATE(STENCIL_VALUE_MASK), PLD_STATE(STENCIL_WRITEMASK), PLD_STATE(STENCIL_FAIL), PLD_STATE(STENCIL_PASS_DEPTH_FAIL),
-    PLD_STATE(STENCIL_PASS_DEPTH_PASS), PLD_STATE(STENCIL_BACK_FUNC), PLD_STATE(STENCIL_BACK_WRITEMASK),
-    PLD_STATE(STENCIL_CLEAR_VALUE), PLD_STATE(CULL_FACE_MODE), PLD_STATE(FRONT_FACE), PLD_STATE(POLYGON_MODE),
-    PLD_STATE(POLYGON_OFFSET_FACTOR), PLD_STATE(POLYGON_OFFSET_UNITS), PLD_STATE(LOGIC_OP_MODE), PLD_STATE(LINE_WIDTH),
-    PLD_STATE(POINT_SIZE), PLD_STATE(SAMPLE_COVERAGE_VALUE), PLD_STATE(SAMPLE_COVERAGE_INVERT), PLD_STATE(CLIP_ORIGIN),
-    PLD_STATE(CLIP_DEPTH_MODE), PLD_STATE(PROVOKING_VERTEX), PLD_STATE(PRIMITIVE_RESTART_INDEX),
-    PLD_STATE(PACK_ALIGNMENT), PLD_STATE(PACK_ROW_LENGTH), PLD_STATE(PACK_SKIP_ROWS), PLD_STATE(PACK_SKIP_PIXELS),
-    PLD_STATE(UNPACK_ALIGNMENT), PLD_STATE(UNPACK_ROW_LENGTH), PLD_STATE(UNPACK_SKIP_ROWS), PLD_STATE(UNPACK_SKIP_PIXELS),
-    PLD_STATE(DEBUG_GROUP_STACK_DEPTH), PLD_STATE(MIN_SAMPLE_SHADING_VALUE), PLD_STATE(CLAMP_READ_COLOR),
-    {"COLOR_CLEAR_VALUE", GL_COLOR_CLEAR_VALUE, 4}, {"BLEND_COLOR", GL_BLEND_COLOR, 4}};
-constexpr Named kSwitches[] = {
-    PLD_STATE(DEPTH_TEST), PLD_STATE(STENCIL_TEST), PLD_STATE(CULL_FACE), PLD_STATE(COLOR_LOGIC_OP), PLD_STATE(DITHER),
-    PLD_STATE(FRAMEBUFFER_SRGB), PLD_STATE(MULTISAMPLE), PLD_STATE(SAMPLE_ALPHA_TO_COVERAGE), PLD_STATE(SAMPLE_ALPHA_TO_ONE),
-    PLD_STATE(SAMPLE_COVERAGE), PLD_STATE(SAMPLE_MASK), PLD_STATE(SAMPLE_SHADING), PLD_STATE(RASTERIZER_DISCARD),
-    PLD_STATE(PRIMITIVE_RESTART), PLD_STATE(PRIMITIVE_RESTART_FIXED_INDEX), PLD_STATE(POLYGON_OFFSET_FILL),
-    PLD_STATE(DEPTH_CLAMP), PLD_STATE(PROGRAM_POINT_SIZE), PLD_STATE(TEXTURE_CUBE_MAP_SEAMLESS), PLD_STATE(LINE_SMOOTH),
-    PLD_STATE(CLIP_DISTANCE0), PLD_STATE(CLIP_DISTANCE1), PLD_STATE(CLIP_DISTANCE2), PLD_STATE(CLIP_DISTANCE3),
-    PLD_STATE(CLIP_DISTANCE4), PLD_STATE(CLIP_DISTANCE5), PLD_STATE(CLIP_DISTANCE6), PLD_STATE(CLIP_DISTANCE7)};
-constexpr Named kPerBuffer[] = {PLD_STATE(BLEND_SRC_RGB), PLD_STATE(BLEND_DST_RGB), PLD_STATE(BLEND_SRC_ALPHA),
-                                PLD_STATE(BLEND_DST_ALPHA), PLD_STATE(BLEND_EQUATION_RGB), PLD_STATE(BLEND_EQUATION_ALPHA)};
-constexpr Named kPerUnit[] = {PLD_STATE(TEXTURE_BINDING_1D), PLD_STATE(TEXTURE_BINDING_2D), PLD_STATE(TEXTURE_BINDING_3D),
-                              PLD_STATE(TEXTURE_BINDING_2D_ARRAY), PLD_STATE(TEXTURE_BINDING_CUBE_MAP),
-                              PLD_STATE(TEXTURE_BINDING_BUFFER), PLD_STATE(TEXTURE_BINDING_2D_MULTISAMPLE),
+constexpr Named kNumbers[] = {PLD_STATE(CURRENT_PROGRAM),
+                              PLD_STATE(PROGRAM_PIPELINE_BINDING),
+                              PLD_STATE(VERTEX_ARRAY_BINDING),
+                              PLD_STATE(ARRAY_BUFFER_BINDING),
+                              PLD_STATE(UNIFORM_BUFFER_BINDING),
+                              PLD_STATE(SHADER_STORAGE_BUFFER_BINDING),
+                              PLD_STATE(ATOMIC_COUNTER_BUFFER_BINDING),
+                              PLD_STATE(PIXEL_PACK_BUFFER_BINDING),
+                              PLD_STATE(PIXEL_UNPACK_BUFFER_BINDING),
+                              PLD_STATE(COPY_READ_BUFFER_BINDING),
+                              PLD_STATE(COPY_WRITE_BUFFER_BINDING),
+                              PLD_STATE(DRAW_INDIRECT_BUFFER_BINDING),
+                              PLD_STATE(TRANSFORM_FEEDBACK_BUFFER_BINDING),
+                              PLD_STATE(DRAW_FRAMEBUFFER_BINDING),
+                              PLD_STATE(READ_FRAMEBUFFER_BINDING),
+                              PLD_STATE(RENDERBUFFER_BINDING),
+                              PLD_STATE(ACTIVE_TEXTURE),
+                              PLD_STATE(READ_BUFFER),
+                              PLD_STATE(DEPTH_FUNC),
+                              PLD_STATE(DEPTH_WRITEMASK),
+                              PLD_STATE(DEPTH_CLEAR_VALUE),
+                              PLD_STATE(STENCIL_FUNC),
+                              PLD_STATE(STENCIL_REF),
+                              PLD_STATE(STENCIL_VALUE_MASK),
+                              PLD_STATE(STENCIL_WRITEMASK),
+                              PLD_STATE(STENCIL_FAIL),
+                              PLD_STATE(STENCIL_PASS_DEPTH_FAIL),
+                              PLD_STATE(STENCIL_PASS_DEPTH_PASS),
+                              PLD_STATE(STENCIL_BACK_FUNC),
+                              PLD_STATE(STENCIL_BACK_WRITEMASK),
+                              PLD_STATE(STENCIL_CLEAR_VALUE),
+                              PLD_STATE(CULL_FACE_MODE),
+                              PLD_STATE(FRONT_FACE),
+                              PLD_STATE(POLYGON_MODE),
+                              PLD_STATE(POLYGON_OFFSET_FACTOR),
+                              PLD_STATE(POLYGON_OFFSET_UNITS),
+                              PLD_STATE(LOGIC_OP_MODE),
+                              PLD_STATE(LINE_WIDTH),
+                              PLD_STATE(POINT_SIZE),
+                              PLD_STATE(SAMPLE_COVERAGE_VALUE),
+                              PLD_STATE(SAMPLE_COVERAGE_INVERT),
+                              PLD_STATE(CLIP_ORIGIN),
+                              PLD_STATE(CLIP_DEPTH_MODE),
+                              PLD_STATE(PROVOKING_VERTEX),
+                              PLD_STATE(PRIMITIVE_RESTART_INDEX),
+                              PLD_STATE(PACK_ALIGNMENT),
+                              PLD_STATE(PACK_ROW_LENGTH),
+                              PLD_STATE(PACK_SKIP_ROWS),
+                              PLD_STATE(PACK_SKIP_PIXELS),
+                              PLD_STATE(UNPACK_ALIGNMENT),
+                              PLD_STATE(UNPACK_ROW_LENGTH),
+                              PLD_STATE(UNPACK_SKIP_ROWS),
+                              PLD_STATE(UNPACK_SKIP_PIXELS),
+                              PLD_STATE(DEBUG_GROUP_STACK_DEPTH),
+                              PLD_STATE(MIN_SAMPLE_SHADING_VALUE),
+                              PLD_STATE(CLAMP_READ_COLOR),
+                              {"COLOR_CLEAR_VALUE", GL_COLOR_CLEAR_VALUE, 4},
+                              {"BLEND_COLOR", GL_BLEND_COLOR, 4}};
+constexpr Named kSwitches[] = {PLD_STATE(DEPTH_TEST),
+                               PLD_STATE(STENCIL_TEST),
+                               PLD_STATE(CULL_FACE),
+                               PLD_STATE(COLOR_LOGIC_OP),
+                               PLD_STATE(DITHER),
+                               PLD_STATE(FRAMEBUFFER_SRGB),
+                               PLD_STATE(MULTISAMPLE),
+                               PLD_STATE(SAMPLE_ALPHA_TO_COVERAGE),
+                               PLD_STATE(SAMPLE_ALPHA_TO_ONE),
+                               PLD_STATE(SAMPLE_COVERAGE),
+                               PLD_STATE(SAMPLE_MASK),
+                               PLD_STATE(SAMPLE_SHADING),
+                               PLD_STATE(RASTERIZER_DISCARD),
+                               PLD_STATE(PRIMITIVE_RESTART),
+                               PLD_STATE(PRIMITIVE_RESTART_FIXED_INDEX),
+                               PLD_STATE(POLYGON_OFFSET_FILL),
+                               PLD_STATE(DEPTH_CLAMP),
+                               PLD_STATE(PROGRAM_POINT_SIZE),
+                               PLD_STATE(TEXTURE_CUBE_MAP_SEAMLESS),
+                               PLD_STATE(LINE_SMOOTH),
+                               PLD_STATE(CLIP_DISTANCE0),
+                               PLD_STATE(CLIP_DISTANCE1),
+                               PLD_STATE(CLIP_DISTANCE2),
+                               PLD_STATE(CLIP_DISTANCE3),
+                               PLD_STATE(CLIP_DISTANCE4),
+                               PLD_STATE(CLIP_DISTANCE5),
+                               PLD_STATE(CLIP_DISTANCE6),
+                               PLD_STATE(CLIP_DISTANCE7)};
+constexpr Named kPerBuffer[] = {PLD_STATE(BLEND_SRC_RGB),      PLD_STATE(BLEND_DST_RGB),
+                                PLD_STATE(BLEND_SRC_ALPHA),    PLD_STATE(BLEND_DST_ALPHA),
+                                PLD_STATE(BLEND_EQUATION_RGB), PLD_STATE(BLEND_EQUATION_ALPHA)};
+constexpr Named kPerUnit[] = {PLD_STATE(TEXTURE_BINDING_1D),
+                              PLD_STATE(TEXTURE_BINDING_2D),
+                              PLD_STATE(TEXTURE_BINDING_3D),
+                              PLD_STATE(TEXTURE_BINDING_2D_ARRAY),
+                              PLD_STATE(TEXTURE_BINDING_CUBE_MAP),
+                              PLD_STATE(TEXTURE_BINDING_BUFFER),
+                              PLD_STATE(TEXTURE_BINDING_2D_MULTISAMPLE),
                               PLD_STATE(SAMPLER_BINDING)};
 #undef PLD_STATE
 constexpr int kBuffers = 8, kUnits = 24, kBindings = 12, kViewports = 16;
@@ -103,7 +168,8 @@ GlState glState() {
     glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, index, &which);
     glGetInteger64i_v(GL_UNIFORM_BUFFER_START, index, &from);
     glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, index, &bytes);
-    state[fmt::format("UNIFORM_BUFFER[{}]", i)] = {static_cast<double>(which), static_cast<double>(from), static_cast<double>(bytes)};
+    state[fmt::format("UNIFORM_BUFFER[{}]", i)] = {static_cast<double>(which), static_cast<double>(from),
+                                                   static_cast<double>(bytes)};
   }
   for (int i = 0; i < kBindings; ++i) {
     const auto index = static_cast<GLuint>(i);
@@ -112,7 +178,8 @@ GlState glState() {
     glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, index, &which);
     glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, index, &from);
     glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, index, &bytes);
-    state[fmt::format("SHADER_STORAGE_BUFFER[{}]", i)] = {static_cast<double>(which), static_cast<double>(from), static_cast<double>(bytes)};
+    state[fmt::format("SHADER_STORAGE_BUFFER[{}]", i)] = {static_cast<double>(which), static_cast<double>(from),
+                                                          static_cast<double>(bytes)};
     GLint counter = 0;
     if (i < 1) glGetIntegeri_v(GL_ATOMIC_COUNTER_BUFFER_BINDING, index, &counter);
     state[fmt::format("ATOMIC_COUNTER_BUFFER[{}]", i)] = {static_cast<double>(counter)};
@@ -199,9 +266,9 @@ void setUnlikelyState() {
   glSampleCoverage(0.5f, GL_TRUE);
   glPolygonOffset(3.0f, 5.0f);
   glPrimitiveRestartIndex(77);
-  for (const GLenum what :
-       {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_CULL_FACE, GL_COLOR_LOGIC_OP, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE,
-        GL_SAMPLE_MASK, GL_RASTERIZER_DISCARD, GL_FRAMEBUFFER_SRGB, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART})
+  for (const GLenum what : {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_CULL_FACE, GL_COLOR_LOGIC_OP,
+                            GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK, GL_RASTERIZER_DISCARD,
+                            GL_FRAMEBUFFER_SRGB, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART})
     glEnable(what);
   for (GLenum i = 0; i < 8; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);

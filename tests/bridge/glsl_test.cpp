@@ -58,23 +58,24 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
   };
   constexpr uint32_t all = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
                            PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS;
-  const Case cases[] = {{PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0},
-                        {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, all},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
-                        {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, PLD_FEATURE_DIFFUSION},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, all & ~static_cast<uint32_t>(PLD_FEATURE_LIGHT)},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION | PLD_FEATURE_SOLIDS},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, 0},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS | PLD_FEATURE_SOLIDS},
-                        {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
-                        {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0},
-                        {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS},
-                        {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, all | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
-                        {PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0}};
+  const Case cases[] = {
+      {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0},
+      {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, all},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
+      {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, all},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, PLD_FEATURE_DIFFUSION},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, all & ~static_cast<uint32_t>(PLD_FEATURE_LIGHT)},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION | PLD_FEATURE_SOLIDS},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, 0},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS | PLD_FEATURE_SOLIDS},
+      {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
+      {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0},
+      {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, all | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
+      {PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0}};
   int compiled = 0, skipped = 0;
   for (const Case& one : cases)
     for (const pld_depth depth : {PLD_DEPTH_DEVICE, PLD_DEPTH_LINEAR}) {
@@ -93,10 +94,13 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
         for (const int version : {330, 400, 410, 420, 430, 440, 450, 460}) {
           const char* seam = nullptr;
           const pld_status status = pld_glsl(pass, stage, version, &seam);
-          const bool has = stage == PLD_STAGE_LAYERS || (stage == PLD_STAGE_FRONT && one.method == PLD_METHOD_FRONT_TAIL && one.tier != PLD_TIER_EXACT) ||
-                           (stage == PLD_STAGE_LOW && (one.features & PLD_FEATURE_LOW_RESOLUTION)) ||
-                           (stage == PLD_STAGE_RIMS && (one.features & PLD_FEATURE_RIMS) && one.method != PLD_METHOD_FRONT_TAIL && one.tier != PLD_TIER_PUBLISHED) ||
-                           (stage == PLD_STAGE_SOLIDS && (one.features & PLD_FEATURE_SOLIDS));
+          const bool has =
+              stage == PLD_STAGE_LAYERS ||
+              (stage == PLD_STAGE_FRONT && one.method == PLD_METHOD_FRONT_TAIL && one.tier != PLD_TIER_EXACT) ||
+              (stage == PLD_STAGE_LOW && (one.features & PLD_FEATURE_LOW_RESOLUTION)) ||
+              (stage == PLD_STAGE_RIMS && (one.features & PLD_FEATURE_RIMS) && one.method != PLD_METHOD_FRONT_TAIL &&
+               one.tier != PLD_TIER_PUBLISHED) ||
+              (stage == PLD_STAGE_SOLIDS && (one.features & PLD_FEATURE_SOLIDS));
           const bool late = one.tier == PLD_TIER_EXACT && version < 430;
           ASSERT_EQ(status, !has ? PLD_ERROR_ARGUMENT : late ? PLD_ERROR_UNSUPPORTED : PLD_OK);
           if (!has || late) continue;
@@ -131,7 +135,8 @@ TEST(BridgeGlsl, TheTextGuardsItself) {
   ASSERT_NE(pass, nullptr);
   const char* seam = nullptr;
   ASSERT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, 330, &seam), PLD_OK);
-  const GLuint program = makeProgram(std::string("#version 330 core\n") + kHostVertex, std::string("#version 330 core\n") + seam + seam + kHostShader);
+  const GLuint program = makeProgram(std::string("#version 330 core\n") + kHostVertex,
+                                     std::string("#version 330 core\n") + seam + seam + kHostShader);
   EXPECT_NE(program, 0u);
   glDeleteProgram(program);
   pld_destroy(&pass);

@@ -191,7 +191,8 @@ void main() {
   glCreateVertexArrays(1, &vertexArray);
   const std::vector<glm::vec4> none(1);
   const std::vector<glm::vec4>& dispersion = lists.disperses() ? lists.dispersion : none;
-  glNamedBufferData(buffers[0], static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Fragment)), lists.fragments.data(), GL_STATIC_DRAW);
+  glNamedBufferData(buffers[0], static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Fragment)),
+                    lists.fragments.data(), GL_STATIC_DRAW);
   glNamedBufferData(buffers[1], static_cast<GLsizeiptr>(offsets.size() * 4), offsets.data(), GL_STATIC_DRAW);
   glNamedBufferData(buffers[2], static_cast<GLsizeiptr>(dispersion.size() * 16), dispersion.data(), GL_STATIC_DRAW);
   for (GLuint i = 0; i < 3; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3 + i, buffers[i]);

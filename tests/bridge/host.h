@@ -41,8 +41,8 @@ class Host {
   pld_target target() const;
   // Expects it to succeed.
   pld_pass* create(const pld_create_info& info);
-  void upload(const GBuffer& gbuffer);  // colour and depth
-  std::vector<float> picture() const;   // of the target
+  void upload(const GBuffer& gbuffer);        // colour and depth
+  std::vector<float> picture() const;         // of the target
   std::vector<float> finish(pld_pass* pass);  // resolves, destroys the pass, and gives the picture
 
   int width, height;

@@ -40,7 +40,8 @@ bool sanitized() {
 
 TEST(BridgeInstall, TheLibraryShowsItsInterfaceAndNothingElse) {
   const std::string folder = installed();
-  const Ended listed = shell("nm -D --defined-only --format=posix '" + folder + "/prefix/lib/libpellucid_c.so'", folder);
+  const Ended listed =
+      shell("nm -D --defined-only --format=posix '" + folder + "/prefix/lib/libpellucid_c.so'", folder);
   ASSERT_EQ(listed.code, 0) << listed.out;
   std::set<std::string> shown, declared;
   std::istringstream lines(listed.out);
@@ -59,9 +60,10 @@ TEST(BridgeInstall, TheLibraryShowsItsInterfaceAndNothingElse) {
 TEST(BridgeInstall, AnOutsideCmakeProjectBuildsAndRenders) {
   if (sanitized()) GTEST_SKIP() << "a library built with a sanitizer wants programs built with it";
   const std::string folder = installed(), build = folder + "/cmake";
-  const Ended built = shell("cmake -S '" PELLUCID_SOURCE_DIR "/tests/bridge/outside' -B '" + build + "' -DROOMS=ON -DCMAKE_PREFIX_PATH='" +
-                                folder + "/prefix' && cmake --build '" + build + "'",
-                            folder);
+  const Ended built =
+      shell("cmake -S '" PELLUCID_SOURCE_DIR "/tests/bridge/outside' -B '" + build +
+                "' -DROOMS=ON -DCMAKE_PREFIX_PATH='" + folder + "/prefix' && cmake --build '" + build + "'",
+            folder);
   ASSERT_EQ(built.code, 0) << built.out;
   const Ended drawn = shell("'" + build + "/outside' && '" + build + "/rooms'", folder);
   EXPECT_EQ(drawn.code, 0) << drawn.out;
@@ -73,19 +75,22 @@ TEST(BridgeInstall, AnOutsidePkgConfigProjectBuildsAndRenders) {
   if (sanitized()) GTEST_SKIP() << "a library built with a sanitizer wants programs built with it";
   const std::string folder = installed();
   const std::string config = "PKG_CONFIG_PATH='" + folder + "/prefix/lib/pkgconfig' pkg-config --cflags --libs ";
-  const Ended built = shell("cc -std=c99 -Wall -Wextra -Wpedantic -Werror -o '" + folder + "/outside' '" PELLUCID_SOURCE_DIR
-                            "/tests/bridge/outside/outside.c' $(" + config + "pellucid) -lEGL -lGL -lm -Wl,-rpath,'" + folder +
-                                "/prefix/lib'",
+  const Ended built = shell("cc -std=c99 -Wall -Wextra -Wpedantic -Werror -o '" + folder +
+                                "/outside' '" PELLUCID_SOURCE_DIR "/tests/bridge/outside/outside.c' $(" + config +
+                                "pellucid) -lEGL -lGL -lm -Wl,-rpath,'" + folder + "/prefix/lib'",
                             folder);
   ASSERT_EQ(built.code, 0) << built.out;
   const Ended drawn = shell("'" + folder + "/outside'", folder);
   EXPECT_EQ(drawn.code, 0) << drawn.out;
   EXPECT_NE(drawn.out.find("rendered"), std::string::npos) << drawn.out;
-  const Ended version = shell("PKG_CONFIG_PATH='" + folder + "/prefix/lib/pkgconfig' pkg-config --modversion pellucid", folder);
-  EXPECT_EQ(version.out, std::to_string(PLD_VERSION_MAJOR) + "." + std::to_string(PLD_VERSION_MINOR) + "." + std::to_string(PLD_VERSION_PATCH) + "\n");
-  const Ended rooms = shell("c++ -o '" + folder + "/rooms' '" PELLUCID_SOURCE_DIR "/tests/bridge/outside/rooms.cpp' $(" + config +
-                                "pellucid-rooms) && '" + folder + "/rooms'",
-                            folder);
+  const Ended version =
+      shell("PKG_CONFIG_PATH='" + folder + "/prefix/lib/pkgconfig' pkg-config --modversion pellucid", folder);
+  EXPECT_EQ(version.out, std::to_string(PLD_VERSION_MAJOR) + "." + std::to_string(PLD_VERSION_MINOR) + "." +
+                             std::to_string(PLD_VERSION_PATCH) + "\n");
+  const Ended rooms =
+      shell("c++ -o '" + folder + "/rooms' '" PELLUCID_SOURCE_DIR "/tests/bridge/outside/rooms.cpp' $(" + config +
+                "pellucid-rooms) && '" + folder + "/rooms'",
+            folder);
   EXPECT_EQ(rooms.code, 0) << rooms.out;
   EXPECT_NE(rooms.out.find("composited"), std::string::npos) << rooms.out;
 }

@@ -1,4 +1,5 @@
-// Layers of low resolution under front+tail: laid over the nearest layer where they stand before it, else among the others.
+// Layers of low resolution under front+tail: laid over the nearest layer where they stand before it, else among the
+// others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace {
 constexpr int kWidth = 64, kHeight = 48;
 constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f};
 
-FragmentLists listsOf(const Window& window, Random& random, bool coloured, std::uint32_t most, const Image<float>& opaqueZ) {
+FragmentLists listsOf(const Window& window, Random& random, bool coloured, std::uint32_t most,
+                      const Image<float>& opaqueZ) {
   FragmentLists lists;
   lists.window = window;
   lists.solid = Image<glm::vec4>(window.width(), window.height(), glm::vec4(0, 0, 0, INFINITY));
@@ -26,7 +28,8 @@ FragmentLists listsOf(const Window& window, Random& random, bool coloured, std::
         Fragment one{};
         one.coverage = .1f + .8f * random.uniformf();
         const float grey = .9f * random.uniformf();
-        one.transmission = coloured ? glm::vec3(.9f * random.uniformf(), .9f * random.uniformf(), grey) : glm::vec3(grey);
+        one.transmission =
+            coloured ? glm::vec3(.9f * random.uniformf(), .9f * random.uniformf(), grey) : glm::vec3(grey);
         one.radiance = one.coverage * glm::vec3(random.uniformf(), 2 * random.uniformf(), .1f);
         one.z = 1.5f + 3.0f * random.uniformf();
         if (one.z <= opaqueZ.at(x, y)) lists.fragments.push_back(one);
@@ -129,7 +132,8 @@ TEST(BridgeLow, FrontAndTailLaysWhatIsBeforeOverTheNearest) {
           const glm::vec3 expected = resolved.transparent + resolved.transmission * glm::vec3(gbuffer.beauty.at(x, y));
           double off = 0;
           for (int c = 0; c < 3; ++c)
-            off = std::max(off, std::abs(static_cast<double>(expected[c]) - static_cast<double>(found[4 * i + static_cast<std::size_t>(c)])));
+            off = std::max(off, std::abs(static_cast<double>(expected[c]) -
+                                         static_cast<double>(found[4 * i + static_cast<std::size_t>(c)])));
           return off;
         };
         if (!shows) {
@@ -147,8 +151,11 @@ TEST(BridgeLow, FrontAndTailLaysWhatIsBeforeOverTheNearest) {
         ++(z < frontZ ? before : behind);
         worst = std::max(worst, errorIf(z < frontZ));
       }
-      std::printf("low resolution at 1/%d under front+tail, %s: smoke before the nearest layer in %zu pixels, behind it in %zu, not known in %zu: off by at "
-                  "most %.2g\n", factor, coloured ? "coloured" : "grey", before, behind, unknown, worst);
+      std::printf(
+          "low resolution at 1/%d under front+tail, %s: smoke before the nearest layer in %zu pixels, behind it in "
+          "%zu, not known in %zu: off by at "
+          "most %.2g\n",
+          factor, coloured ? "coloured" : "grey", before, behind, unknown, worst);
       EXPECT_LT(unknown, (before + behind) / 20);
       EXPECT_GT(before, 300u);
       EXPECT_GT(behind, 300u);

@@ -24,7 +24,8 @@ struct Wanted {
   bool disperses = false;
 };
 
-FragmentLists listsOf(const Window& window, Random& random, const Wanted& wanted, bool low, const Image<float>& opaqueZ) {
+FragmentLists listsOf(const Window& window, Random& random, const Wanted& wanted, bool low,
+                      const Image<float>& opaqueZ) {
   FragmentLists lists;
   lists.window = window;
   lists.solid = Image<glm::vec4>(window.width(), window.height(), glm::vec4(0, 0, 0, INFINITY));
@@ -37,12 +38,16 @@ FragmentLists listsOf(const Window& window, Random& random, const Wanted& wanted
         Fragment one{};
         one.coverage = random.below(8) == 0 ? 0.0f : .1f + .8f * random.uniformf();
         const float grey = random.uniformf();
-        one.transmission = wanted.coloured ? glm::vec3(random.uniformf(), random.uniformf(), grey) : glm::vec3(.9f * grey);
+        one.transmission =
+            wanted.coloured ? glm::vec3(random.uniformf(), random.uniformf(), grey) : glm::vec3(.9f * grey);
         one.radiance = glm::vec3(random.uniformf(), 4 * random.uniformf(), .1f);
         one.z = 1.5f + 3.0f * random.uniformf();
-        if (wanted.refracts && random.below(2)) one.offset = glm::vec2(10 * random.uniformf() - 5, 8 * random.uniformf() - 4);
-        if (wanted.diffuses && random.below(3) == 0) one.variance = 20.0f * random.uniformf() / static_cast<float>(low ? wanted.factor * wanted.factor : 1);
-        if (random.below(16) == 0) one.transmission = glm::vec3(1), one.radiance = glm::vec3(0);  // bends and spreads unseen
+        if (wanted.refracts && random.below(2))
+          one.offset = glm::vec2(10 * random.uniformf() - 5, 8 * random.uniformf() - 4);
+        if (wanted.diffuses && random.below(3) == 0)
+          one.variance = 20.0f * random.uniformf() / static_cast<float>(low ? wanted.factor * wanted.factor : 1);
+        if (random.below(16) == 0)
+          one.transmission = glm::vec3(1), one.radiance = glm::vec3(0);  // bends and spreads unseen
         if (one.z > opaqueZ.at(x, y)) continue;
         lists.fragments.push_back(one);
         if (wanted.disperses) lists.dispersion.emplace_back(random.uniformf(), -.5f, .25f * random.uniformf(), .5f);
@@ -70,12 +75,14 @@ OitPlanes folded(const FragmentLists& lists) {
 
 TEST(BridgeLow, UpsampledLayersAreThoseOfTheRooms) {
   GlContext context;
-  for (const Wanted& wanted : {Wanted{"coloured, 1/2", true, false, false, false, 2}, Wanted{"coloured, solids, 1/4", true, false, false, true, 4},
-                               Wanted{"coloured, 1/8", true, false, false, false, 8}, Wanted{"grey, 1/4", false, false, false, false, 4},
-                               Wanted{"grey, refraction, diffusion, solids, 1/2", false, true, true, true, 2},
-                               Wanted{"coloured, refraction, diffusion, 1/4", true, true, true, false, 4},
-                               Wanted{"grey, refraction, 1/8", false, true, false, false, 8},
-                               Wanted{"coloured, refraction, dispersion, diffusion, solids, 1/2", true, true, true, true, 2, true}}) {
+  for (const Wanted& wanted :
+       {Wanted{"coloured, 1/2", true, false, false, false, 2},
+        Wanted{"coloured, solids, 1/4", true, false, false, true, 4},
+        Wanted{"coloured, 1/8", true, false, false, false, 8}, Wanted{"grey, 1/4", false, false, false, false, 4},
+        Wanted{"grey, refraction, diffusion, solids, 1/2", false, true, true, true, 2},
+        Wanted{"coloured, refraction, diffusion, 1/4", true, true, true, false, 4},
+        Wanted{"grey, refraction, 1/8", false, true, false, false, 8},
+        Wanted{"coloured, refraction, dispersion, diffusion, solids, 1/2", true, true, true, true, 2, true}}) {
     Random random(5);
     GBuffer gbuffer;
     gbuffer.display = gbuffer.data = {0, 0, kWidth, kHeight};
@@ -124,8 +131,8 @@ TEST(BridgeLow, UpsampledLayersAreThoseOfTheRooms) {
       worst = std::max(worst, std::abs(static_cast<double>(value) - static_cast<double>(found[i])));
       changed += value != without[i / 4][static_cast<int>(i % 4)];
     }
-    std::printf("low resolution, %s: %zu of %zu words under smoke; %zu differ from the rooms', by at most %.2g\n", wanted.what, changed,
-                found.size(), words, worst);
+    std::printf("low resolution, %s: %zu of %zu words under smoke; %zu differ from the rooms', by at most %.2g\n",
+                wanted.what, changed, found.size(), words, worst);
     EXPECT_GT(changed, found.size() / 3);
     EXPECT_EQ(words, 0u);
     pld_destroy(&pass);
@@ -151,9 +158,10 @@ TEST(BridgeLow, AnEvenVeilIsItselfAtEveryFactor) {
     for (const pld_stage stage : {PLD_STAGE_LAYERS, PLD_STAGE_LOW}) {
       const char* seam = nullptr;
       ASSERT_EQ(pld_glsl(pass, stage, 330, &seam), PLD_OK) << pld_message(pass);
-      const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam +
-                                                                "void main() { pldWriteFragment(pldSurface(vec3(0.2, 0.1, 0.4), 0.5, "
-                                                                "vec3(0.5), vec3(0.0, 0.0, -3.0))); }\n");
+      const GLuint program =
+          makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam +
+                                             "void main() { pldWriteFragment(pldSurface(vec3(0.2, 0.1, 0.4), 0.5, "
+                                             "vec3(0.5), vec3(0.0, 0.0, -3.0))); }\n");
       ASSERT_EQ(pld_connect(pass, program), PLD_OK);
       ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
       glBindVertexArray(array);
@@ -177,15 +185,17 @@ TEST(BridgeLow, AnEvenVeilIsItselfAtEveryFactor) {
   EXPECT_NE(pictures[0][0], 0.5f);
 }
 
-// And so is an even pane that refracts and diffuses what stands behind it: its offset and spread are of pixels, whatever a
-// texel is.
+// And so is an even pane that refracts and diffuses what stands behind it: its offset and spread are of pixels,
+// whatever a texel is.
 TEST(BridgeLow, AnEvenPaneScattersAlikeAtEveryFactor) {
   GlContext context;
   Host host(kWidth, kHeight);
   std::vector<float> wave;
   for (int i = 0; i < kWidth * kHeight; ++i) {
     const auto x = static_cast<float>(i % kWidth), y = static_cast<float>(i / kWidth);
-    for (const float c : {.5f + .5f * std::sin(.4f * x), .5f + .5f * std::sin(.3f * y), .5f + .5f * std::sin(.2f * (x + y)), 1.0f}) wave.push_back(c);
+    for (const float c :
+         {.5f + .5f * std::sin(.4f * x), .5f + .5f * std::sin(.3f * y), .5f + .5f * std::sin(.2f * (x + y)), 1.0f})
+      wave.push_back(c);
   }
   fillTexture(host.colour, kWidth, kHeight, GL_RGBA, wave.data());
   const char* const main = R"(
@@ -200,8 +210,9 @@ void main() {
 )";
   GLuint array = 0;
   glCreateVertexArrays(1, &array);
-  for (const uint32_t features : {uint32_t{PLD_FEATURE_REFRACTION}, uint32_t{PLD_FEATURE_DIFFUSION},
-                                  uint32_t{PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION | PLD_FEATURE_DISPERSION | PLD_FEATURE_DIFFUSION}})
+  for (const uint32_t features :
+       {uint32_t{PLD_FEATURE_REFRACTION}, uint32_t{PLD_FEATURE_DIFFUSION},
+        uint32_t{PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION | PLD_FEATURE_DISPERSION | PLD_FEATURE_DIFFUSION}})
     // The last turn has the lens fixed, which is another one at low resolution.
     for (const int turn : {0, 1, 2}) {
       const bool half = turn == 1, fixes = turn == 2;
@@ -251,10 +262,13 @@ void main() {
           double worst = 0, moved = 0;  // beside the same pane without scattering
           for (std::size_t i = 0; i < picture.size(); ++i) {
             worst = std::max(worst, std::abs(static_cast<double>(picture[i]) - static_cast<double>(whole[i])));
-            if (i % 4 != 3) moved = std::max(moved, std::abs(static_cast<double>(whole[i]) - (.02 + .925 * static_cast<double>(wave[i]))));
+            if (i % 4 != 3)
+              moved = std::max(moved,
+                               std::abs(static_cast<double>(whole[i]) - (.02 + .925 * static_cast<double>(wave[i]))));
           }
-          std::printf("an even pane at 1/%d, features %u%s%s: off by at most %.2g where it moves things by up to %.2g\n", factor, features,
-                      orthographic ? ", orthographic" : "", half ? ", half" : "", worst, moved);
+          std::printf(
+              "an even pane at 1/%d, features %u%s%s: off by at most %.2g where it moves things by up to %.2g\n",
+              factor, features, orthographic ? ", orthographic" : "", half ? ", half" : "", worst, moved);
           EXPECT_GT(moved, .02);
           // The upsampled offset, rounded, times the background's slope; halves round sums of 10 px and less by 2^-8.
           EXPECT_LT(worst, half ? .004 : 2e-5);

@@ -30,7 +30,8 @@ TEST(BridgeMisuse, CreateRefusesWhatItCannotKeep) {
     pld_create_info changed = host.info();
     change(changed);
     host.log.lines.clear();
-    EXPECT_STREQ(pld_status_name(pld_create(&changed, &pass)), pld_status_name(expected)) << what << " " << host.log.last();
+    EXPECT_STREQ(pld_status_name(pld_create(&changed, &pass)), pld_status_name(expected))
+        << what << " " << host.log.last();
     EXPECT_EQ(pass, nullptr) << what;
     if (expected != PLD_ERROR_VERSION || changed.struct_size == sizeof(changed)) {
       EXPECT_GT(host.log.last().size(), 10u) << what;
@@ -39,26 +40,64 @@ TEST(BridgeMisuse, CreateRefusesWhatItCannotKeep) {
   refused([](auto& i) { i.struct_size -= 4; }, PLD_ERROR_VERSION, "struct_size");
   refused([](auto& i) { i.version = PLD_VERSION + (1 << 10); }, PLD_ERROR_VERSION, "version");
   refused([](auto& i) { i.get_proc_address = nullptr; }, PLD_ERROR_ARGUMENT, "get_proc_address");
-  refused([](auto& i) { i.get_proc_address = [](void*, const char*) -> pld_proc { return nullptr; }; }, PLD_ERROR_CONTEXT, "no GL");
-  refused([](auto& i) { i.get_proc_address = [](void* user, const char* name) -> pld_proc {
-            return std::string(name) == "glClearBufferfv" ? nullptr : procAddress(user, name); }; },
-          PLD_ERROR_UNSUPPORTED, "a function is missing");
+  refused([](auto& i) { i.get_proc_address = [](void*, const char*) -> pld_proc { return nullptr; }; },
+          PLD_ERROR_CONTEXT, "no GL");
+  refused(
+      [](auto& i) {
+        i.get_proc_address = [](void* user, const char* name) -> pld_proc {
+          return std::string(name) == "glClearBufferfv" ? nullptr : procAddress(user, name);
+        };
+      },
+      PLD_ERROR_UNSUPPORTED, "a function is missing");
   refused([](auto& i) { i.method = static_cast<pld_method>(9); }, PLD_ERROR_ARGUMENT, "method");
   refused([](auto& i) { i.tier = static_cast<pld_tier>(-1); }, PLD_ERROR_ARGUMENT, "tier");
-  for (const float room : {0.0f, -1.0f, 1e9f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
-    refused([&](auto& i) { i.tier = PLD_TIER_EXACT; i.fragments_per_pixel = room; }, PLD_ERROR_ARGUMENT, "exact, without room or with too much");
-  refused([](auto& i) { i.tier = PLD_TIER_EXACT; i.fragments_per_pixel = 8.0f; i.storage_binding = 1000; }, PLD_ERROR_ARGUMENT, "storage_binding");
-  refused([](auto& i) { i.tier = PLD_TIER_EXACT; i.fragments_per_pixel = 8.0f; i.struct_size = offsetof(pld_create_info, fragments_per_pixel); },
-          PLD_ERROR_ARGUMENT, "exact, by a header that states no room");
+  for (const float room :
+       {0.0f, -1.0f, 1e9f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+    refused(
+        [&](auto& i) {
+          i.tier = PLD_TIER_EXACT;
+          i.fragments_per_pixel = room;
+        },
+        PLD_ERROR_ARGUMENT, "exact, without room or with too much");
+  refused(
+      [](auto& i) {
+        i.tier = PLD_TIER_EXACT;
+        i.fragments_per_pixel = 8.0f;
+        i.storage_binding = 1000;
+      },
+      PLD_ERROR_ARGUMENT, "storage_binding");
+  refused(
+      [](auto& i) {
+        i.tier = PLD_TIER_EXACT;
+        i.fragments_per_pixel = 8.0f;
+        i.struct_size = offsetof(pld_create_info, fragments_per_pixel);
+      },
+      PLD_ERROR_ARGUMENT, "exact, by a header that states no room");
   refused([](auto& i) { i.features = 1u << 30; }, PLD_ERROR_ARGUMENT, "features");
   refused([](auto& i) { i.flags = 1u << 30; }, PLD_ERROR_ARGUMENT, "flags");
   refused([](auto& i) { i.weight = static_cast<pld_weight>(44); }, PLD_ERROR_ARGUMENT, "weight");
   refused([](auto& i) { i.uniform_binding = 100000; }, PLD_ERROR_ARGUMENT, "uniform_binding");
-  refused([](auto& i) { i.texture_unit = 15; i.features = 0; i.texture_unit = 1000; }, PLD_ERROR_ARGUMENT, "texture_unit");
+  refused(
+      [](auto& i) {
+        i.texture_unit = 15;
+        i.features = 0;
+        i.texture_unit = 1000;
+      },
+      PLD_ERROR_ARGUMENT, "texture_unit");
   refused([](auto& i) { i.texture_unit = 30; }, PLD_ERROR_ARGUMENT, "a unit that is not saved");
-  refused([](auto& i) { i.method = PLD_METHOD_FRONT_TAIL; i.features = PLD_FEATURE_REFRACTION; }, PLD_ERROR_UNSUPPORTED, "front+tail refracts");
+  refused(
+      [](auto& i) {
+        i.method = PLD_METHOD_FRONT_TAIL;
+        i.features = PLD_FEATURE_REFRACTION;
+      },
+      PLD_ERROR_UNSUPPORTED, "front+tail refracts");
   refused([](auto& i) { i.features = PLD_FEATURE_DISPERSION; }, PLD_ERROR_UNSUPPORTED, "dispersion alone");
-  refused([](auto& i) { i.tier = PLD_TIER_PUBLISHED; i.method = PLD_METHOD_FRONT_TAIL; }, PLD_ERROR_UNSUPPORTED, "published front+tail");
+  refused(
+      [](auto& i) {
+        i.tier = PLD_TIER_PUBLISHED;
+        i.method = PLD_METHOD_FRONT_TAIL;
+      },
+      PLD_ERROR_UNSUPPORTED, "published front+tail");
 }
 
 TEST(BridgeMisuse, NullPassesAreRefused) {
@@ -112,7 +151,8 @@ TEST(BridgeMisuse, WrongOrderAndWrongFramesAreRefused) {
     expectRefused(pass, pld_begin(pass, PLD_STAGE_SOLIDS, &frame), expected, what);
   };
   constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  const GLuint small = makeTexture(GL_RGBA32F, 16, 16), byte = makeTexture(GL_R8, 32, 24), integer = makeTexture(GL_RGBA32UI, 32, 24);
+  const GLuint small = makeTexture(GL_RGBA32F, 16, 16), byte = makeTexture(GL_R8, 32, 24),
+               integer = makeTexture(GL_RGBA32UI, 32, 24);
   GLuint cube = 0, deleted = makeTexture(GL_RGBA32F, 32, 24), unborn = 0, samples = 0;
   glCreateTextures(GL_TEXTURE_CUBE_MAP, 1, &cube);
   glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &samples);
@@ -169,7 +209,12 @@ TEST(BridgeMisuse, WrongOrderAndWrongFramesAreRefused) {
   refusedTarget([&](auto& t) { t.name = byte; }, PLD_ERROR_FORMAT, "target format");
   refusedTarget([&](auto& t) { t.name = host.colour; }, PLD_ERROR_TEXTURE, "target is the background");
   refusedTarget([&](auto& t) { t.name = static_cast<GLuint>(plane); }, PLD_ERROR_TEXTURE, "target is a plane");
-  refusedTarget([](auto& t) { t.kind = PLD_TARGET_FRAMEBUFFER; t.name = 999; }, PLD_ERROR_TEXTURE, "no framebuffer");
+  refusedTarget(
+      [](auto& t) {
+        t.kind = PLD_TARGET_FRAMEBUFFER;
+        t.name = 999;
+      },
+      PLD_ERROR_TEXTURE, "no framebuffer");
   // After all that, a frame without layers is the background to the bit.
   ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
   EXPECT_EQ(host.picture(), readTexture(host.colour, 32, 24, GL_RGBA));

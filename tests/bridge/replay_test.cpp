@@ -36,7 +36,8 @@ struct Shot {
     lists.offsets.push_back(0);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
-        gbuffer.beauty.at(x, y) = glm::vec4(random.uniformf(), 3 * random.uniformf(), (x / 9 + y / 7) % 2, random.below(3) ? 1.0f : 0.5f);
+        gbuffer.beauty.at(x, y) =
+            glm::vec4(random.uniformf(), 3 * random.uniformf(), (x / 9 + y / 7) % 2, random.below(3) ? 1.0f : 0.5f);
         gbuffer.viewZ.at(x, y) = (x / 20) % 3 ? 20.0f : (y / 16) % 2 ? 12.0f : INFINITY;
         const std::uint32_t layers = random.below(4) ? random.below(9) : 0;
         for (std::uint32_t i = 0; i < layers; ++i) add(random, wanted);
@@ -60,7 +61,10 @@ struct Shot {
     const float grey = random.uniformf();
     // Within a thousandth of 1 it adds light.
     const float most = wanted.light ? 1.0f : 0.998f;
-    fragment.transmission = most * (wanted.coloured ? glm::vec3(random.uniformf(), random.below(3) || !wanted.light ? random.uniformf() : 1.0f, grey) : glm::vec3(0.9f * grey));
+    fragment.transmission =
+        most * (wanted.coloured
+                    ? glm::vec3(random.uniformf(), random.below(3) || !wanted.light ? random.uniformf() : 1.0f, grey)
+                    : glm::vec3(0.9f * grey));
     fragment.radiance = glm::vec3(random.uniformf(), 50 * random.uniformf(), 0.01f);
     fragment.z = 1.0f + 8.0f * random.uniformf();
     glm::vec4 dispersion(0.0f);
@@ -122,7 +126,8 @@ Difference compare(const Image<glm::vec4>& expected, const std::vector<float>& f
   for (std::size_t i = 0; i < found.size(); ++i) {
     const float a = expected[i / 4][static_cast<int>(i % 4)], b = found[i];
     if (std::memcmp(&a, &b, sizeof(a)) != 0) ++difference.words;
-    difference.largest = std::max(difference.largest, std::abs(double(a) - double(b)) / std::max(1.0, std::abs(double(a))));
+    difference.largest =
+        std::max(difference.largest, std::abs(double(a) - double(b)) / std::max(1.0, std::abs(double(a))));
   }
   return difference;
 }
@@ -141,17 +146,30 @@ void expectSameBits(const char* what, const Wanted& wanted) {
   EXPECT_GT(untouched.words, found.size() / 3);
 }
 
-TEST(BridgeReplay, GreyLayersGiveTheOfflineBits) { expectSameBits("grey", {.coloured = false, .light = false}); }
-TEST(BridgeReplay, ColouredLayersGiveTheOfflineBits) { expectSameBits("coloured", {.light = false}); }
-TEST(BridgeReplay, ColouredLayersAndLightGiveTheOfflineBits) { expectSameBits("coloured, light", {}); }
-TEST(BridgeReplay, SolidsGiveTheOfflineBits) { expectSameBits("solids", {.solids = true}); }
-TEST(BridgeReplay, RefractionGivesTheOfflineBits) { expectSameBits("refraction", {.refracts = true}); }
-TEST(BridgeReplay, DiffusionGivesTheOfflineBits) { expectSameBits("diffusion", {.diffuses = true}); }
+TEST(BridgeReplay, GreyLayersGiveTheOfflineBits) {
+  expectSameBits("grey", {.coloured = false, .light = false});
+}
+TEST(BridgeReplay, ColouredLayersGiveTheOfflineBits) {
+  expectSameBits("coloured", {.light = false});
+}
+TEST(BridgeReplay, ColouredLayersAndLightGiveTheOfflineBits) {
+  expectSameBits("coloured, light", {});
+}
+TEST(BridgeReplay, SolidsGiveTheOfflineBits) {
+  expectSameBits("solids", {.solids = true});
+}
+TEST(BridgeReplay, RefractionGivesTheOfflineBits) {
+  expectSameBits("refraction", {.refracts = true});
+}
+TEST(BridgeReplay, DiffusionGivesTheOfflineBits) {
+  expectSameBits("diffusion", {.diffuses = true});
+}
 TEST(BridgeReplay, ScatteringWithoutLightGivesTheOfflineBits) {
   expectSameBits("refraction, diffusion", {.light = false, .refracts = true, .diffuses = true});
   expectSameBits("refraction, dispersion, diffusion, solids, no light",
                  {.light = false, .refracts = true, .diffuses = true, .disperses = true, .solids = true});
-  expectSameBits("grey, refraction, diffusion", {.coloured = false, .light = false, .refracts = true, .diffuses = true});
+  expectSameBits("grey, refraction, diffusion",
+                 {.coloured = false, .light = false, .refracts = true, .diffuses = true});
   expectSameBits("grey, refraction", {.coloured = false, .light = false, .refracts = true});
 }
 
@@ -180,7 +198,8 @@ TEST(BridgeReplay, GreyScatteringGivesTheOfflineBits) {
   expectSameBits("grey, refraction", {.coloured = false, .light = false, .refracts = true});
 }
 
-// The nearest layer that diffuses takes no plane that it does not need, and the others' depths are kept for low resolution alone.
+// The nearest layer that diffuses takes no plane that it does not need, and the others' depths are kept for low
+// resolution alone.
 TEST(BridgeReplay, PlanesHoldNothingThatIsNotRead) {
   GlContext context;
   Host host(8, 8);
@@ -213,7 +232,8 @@ TEST(BridgeReplay, PlanesHoldNothingThatIsNotRead) {
   }
 }
 
-// The driver blends 8 and 16 bit targets in its own arithmetic, so it is its planes that go through the offline decoder.
+// The driver blends 8 and 16 bit targets in its own arithmetic, so it is its planes that go through the offline
+// decoder.
 OitPlanes decoded(pld_pass* pass, const Shot& shot, bool scatters) {
   OitPlanes planes = emptyPublishedPlanes(shot.gbuffer.display, shot.gbuffer.data);
   planes.info.weight = kWeight;
@@ -258,7 +278,8 @@ TEST(BridgeReplay, PublishedTierResolvesItsPlanesToTheOfflineBits) {
     const pld_target target = host.target();
     ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
     const OitPlanes planes = decoded(pass, shot, scatters);
-    const Difference difference = compare(compose(resolveOver(planes, {}, {}, shot.gbuffer), shot.gbuffer).rgba, host.picture());
+    const Difference difference =
+        compare(compose(resolveOver(planes, {}, {}, shot.gbuffer), shot.gbuffer).rgba, host.picture());
     std::printf("published%s: resolve of its own planes against the offline one: %zu words differ, by %.2g\n",
                 scatters ? ", scattering" : "", difference.words, difference.largest);
     EXPECT_EQ(difference.words, 0u);
@@ -269,7 +290,8 @@ TEST(BridgeReplay, PublishedTierResolvesItsPlanesToTheOfflineBits) {
     double worst = 0;
     for (std::size_t i = 0; i < planes.depth.size(); ++i)
       for (int c = 0; c < 3; ++c)
-        worst = std::max(worst, std::abs(static_cast<double>(planes.depth[i][c]) - static_cast<double>(folded.depth[i][c])));
+        worst = std::max(worst,
+                         std::abs(static_cast<double>(planes.depth[i][c]) - static_cast<double>(folded.depth[i][c])));
     std::printf("published: beta is %.1f steps from the offline fold's at most\n", worst * 255);
     EXPECT_LE(worst, 8.01 / 255);
     EXPECT_EQ(pld_destroy(&pass), PLD_OK);
@@ -281,14 +303,14 @@ TEST(BridgeReplay, HalfTierIsNear) {
   GlContext context;
   const Wanted wanted;
   const Shot shot(wanted);
-  const Difference difference =
-      compare(offline(shot), bridged(shot, wanted, PLD_TIER_HALF, PLD_METHOD_WEIGHTED));
+  const Difference difference = compare(offline(shot), bridged(shot, wanted, PLD_TIER_HALF, PLD_METHOD_WEIGHTED));
   std::printf("half tier: differs by %.2g relative at most\n", difference.largest);
   EXPECT_LT(difference.largest, 16 * std::ldexp(1.0, -10));
   EXPECT_GT(difference.words, 0u);
 }
 
-// On average: eight roundings of 2^-11. At the edges of what is seen through, an offset of halves may show the other side.
+// On average: eight roundings of 2^-11. At the edges of what is seen through, an offset of halves may show the other
+// side.
 TEST(BridgeReplay, HalfTierThatScattersIsNearOnAverage) {
   GlContext context;
   for (const bool coloured : {true, false})
@@ -300,10 +322,11 @@ TEST(BridgeReplay, HalfTierThatScattersIsNearOnAverage) {
       ASSERT_EQ(found.size(), expected.size() * 4);
       double sum = 0;
       for (std::size_t i = 0; i < found.size(); ++i)
-        sum += std::abs(double(expected[i / 4][static_cast<int>(i % 4)]) - double(found[i])) / std::max(1.0, std::abs(double(found[i])));
+        sum += std::abs(double(expected[i / 4][static_cast<int>(i % 4)]) - double(found[i])) /
+               std::max(1.0, std::abs(double(found[i])));
       const double mean = sum / static_cast<double>(found.size());
-      std::printf("half tier, %s%s, refraction, diffusion: mean relative difference %.2g\n", coloured ? "coloured" : "grey",
-                  light ? ", light" : "", mean);
+      std::printf("half tier, %s%s, refraction, diffusion: mean relative difference %.2g\n",
+                  coloured ? "coloured" : "grey", light ? ", light" : "", mean);
       EXPECT_LT(mean, 8 * std::ldexp(1.0, -11));
     }
 }

@@ -1,4 +1,5 @@
-// Rims of leaves through the C library against the rooms: the light from around apart, darkened by the opaque pixels beside.
+// Rims of leaves through the C library against the rooms: the light from around apart, darkened by the opaque pixels
+// beside.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +27,7 @@ struct Leaves {
   FragmentLists lists;
   OccluderPlanes occluders;
   RimPlanes rims{kWidth, kHeight};
-  std::vector<glm::vec4> aroundOf, gradientOf;  // of each of the lists' fragments
+  std::vector<glm::vec4> aroundOf, gradientOf;                         // of each of the lists' fragments
   Image<glm::vec4> look[kLayers], around[kLayers], gradient[kLayers];  // radiance, coverage; around, z; gradient
 
   explicit Leaves(bool solids) {
@@ -35,7 +36,8 @@ struct Leaves {
     gbuffer.beauty = Image<glm::vec4>(kWidth, kHeight);
     gbuffer.viewZ = occluders.viewZ = occluders.occlusion = Image<float>(kWidth, kHeight);
     lists.solid = Image<glm::vec4>(kWidth, kHeight, glm::vec4(0, 0, 0, INFINITY));
-    for (int i = 0; i < kLayers; ++i) look[i] = around[i] = gradient[i] = Image<glm::vec4>(kWidth, kHeight, glm::vec4(0.0f));
+    for (int i = 0; i < kLayers; ++i)
+      look[i] = around[i] = gradient[i] = Image<glm::vec4>(kWidth, kHeight, glm::vec4(0.0f));
     lists.offsets.push_back(0);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
@@ -49,12 +51,14 @@ struct Leaves {
           one.coverage = solids && random.below(6) == 0 ? 1.0f : .9f * random.uniformf() + .05f;
           one.radiance = one.coverage * glm::vec3(random.uniformf(), random.uniformf(), random.uniformf());
           one.z = 2.9f + .3f * random.uniformf();
-          const glm::vec2 slope = random.below(5) == 0 ? glm::vec2(0) : glm::vec2(random.uniformf() - .5f, random.uniformf() - .5f);
+          const glm::vec2 slope =
+              random.below(5) == 0 ? glm::vec2(0) : glm::vec2(random.uniformf() - .5f, random.uniformf() - .5f);
           look[i].at(x, y) = glm::vec4(one.radiance, one.coverage);
           around[i].at(x, y) = glm::vec4(.75f * one.radiance, one.z);
           gradient[i].at(x, y) = glm::vec4(slope, 0, 0);
           glm::vec4& solid = lists.solid.at(x, y);
-          if (one.coverage == 1.0f && one.z < solid.a && one.z <= gbuffer.viewZ.at(x, y)) solid = glm::vec4(one.radiance, one.z);
+          if (one.coverage == 1.0f && one.z < solid.a && one.z <= gbuffer.viewZ.at(x, y))
+            solid = glm::vec4(one.radiance, one.z);
           seen.push_back(one);
         }
         occluders.viewZ.at(x, y) = std::min(gbuffer.viewZ.at(x, y), lists.solid.at(x, y).a);
@@ -87,7 +91,8 @@ struct Leaves {
         if (!shading::isRim(one.coverage)) continue;
         const shading::OcclusionSearch search = shading::occlusionSearch(glm::vec2(gradientOf[i]));
         const glm::ivec2 place(static_cast<int>(pixel) % kWidth, static_cast<int>(pixel) / kWidth);
-        const float hidden = 1.0f - shading::occlusionFrom(neighboursOcclusion(occluders, place, search, one.z, form), form);
+        const float hidden =
+            1.0f - shading::occlusionFrom(neighboursOcclusion(occluders, place, search, one.z, form), form);
         one.radiance -= hidden * glm::vec3(aroundOf[i]);
       }
     return dark;
@@ -140,7 +145,8 @@ std::vector<float> bridged(const Leaves& leaves, const How& how, std::vector<flo
   for (const pld_stage stage : stages) {
     const char* seam = nullptr;
     EXPECT_EQ(pld_glsl(pass, stage, version, &seam), PLD_OK) << pld_message(pass);
-    const GLuint program = makeProgram(kFullscreenVertex, "#version " + std::to_string(version) + " core\n" + seam + kMain);
+    const GLuint program =
+        makeProgram(kFullscreenVertex, "#version " + std::to_string(version) + " core\n" + seam + kMain);
     EXPECT_EQ(pld_connect(pass, program), PLD_OK);
     EXPECT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
     glUseProgram(program);
@@ -173,12 +179,14 @@ TEST(BridgeRims, OcclusionAtRimsIsThatOfTheRooms) {
     pld_occlusion form;
     int version;
   };
-  for (const Case& one : {Case{"coloured, light", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_RELATIVE, 450},
-                          Case{"coloured, light, published form", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_PUBLISHED, 450},
-                          Case{"GLSL 3.30", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_RELATIVE, 330},
-                          Case{"coloured, light, solids", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS, PLD_OCCLUSION_RELATIVE, 450},
-                          Case{"grey, without light", 0, PLD_OCCLUSION_RELATIVE, 450},
-                          Case{"grey, light, diffusion", PLD_FEATURE_LIGHT | PLD_FEATURE_DIFFUSION, PLD_OCCLUSION_RELATIVE, 450}}) {
+  for (const Case& one :
+       {Case{"coloured, light", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_RELATIVE, 450},
+        Case{"coloured, light, published form", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_PUBLISHED, 450},
+        Case{"GLSL 3.30", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_RELATIVE, 330},
+        Case{"coloured, light, solids", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS,
+             PLD_OCCLUSION_RELATIVE, 450},
+        Case{"grey, without light", 0, PLD_OCCLUSION_RELATIVE, 450},
+        Case{"grey, light, diffusion", PLD_FEATURE_LIGHT | PLD_FEATURE_DIFFUSION, PLD_OCCLUSION_RELATIVE, 450}}) {
     const Leaves leaves((one.features & PLD_FEATURE_SOLIDS) != 0);
     OitPlanes planes = emptyPlanes(leaves.gbuffer.display, leaves.gbuffer.data);
     planes.info.weight = kWeight;
@@ -194,10 +202,13 @@ TEST(BridgeRims, OcclusionAtRimsIsThatOfTheRooms) {
       const float value = expected[i / 4][static_cast<int>(i % 4)];
       words += std::memcmp(&value, &found[i], sizeof(value)) != 0;
       worst = std::max(worst, std::abs(static_cast<double>(value) - static_cast<double>(found[i])));
-      darkened = std::max(darkened, static_cast<double>(open[i / 4][static_cast<int>(i % 4)]) - static_cast<double>(value));
+      darkened =
+          std::max(darkened, static_cast<double>(open[i / 4][static_cast<int>(i % 4)]) - static_cast<double>(value));
     }
-    std::printf("rims, %s: %zu pixels with rims, darkened by up to %.2f; %zu of %zu words differ from the rooms', by at most %.2g\n", one.what,
-                rims, darkened, words, found.size(), worst);
+    std::printf(
+        "rims, %s: %zu pixels with rims, darkened by up to %.2f; %zu of %zu words differ from the rooms', by at most "
+        "%.2g\n",
+        one.what, rims, darkened, words, found.size(), worst);
     EXPECT_GT(rims, 3000u);
     EXPECT_GT(darkened, .2);
     if (one.version >= 400)
@@ -216,8 +227,11 @@ TEST(BridgeRims, FrontAndTailTakesDarkRims) {
     pld_occlusion form;
     int version;
   };
-  for (const Case& one : {Case{"grey", 0, PLD_OCCLUSION_RELATIVE, 450}, Case{"coloured, light, published form", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_PUBLISHED, 450},
-                          Case{"solids", PLD_FEATURE_SOLIDS, PLD_OCCLUSION_RELATIVE, 450}, Case{"GLSL 3.30", PLD_FEATURE_LIGHT, PLD_OCCLUSION_RELATIVE, 330}}) {
+  for (const Case& one :
+       {Case{"grey", 0, PLD_OCCLUSION_RELATIVE, 450},
+        Case{"coloured, light, published form", PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT, PLD_OCCLUSION_PUBLISHED, 450},
+        Case{"solids", PLD_FEATURE_SOLIDS, PLD_OCCLUSION_RELATIVE, 450},
+        Case{"GLSL 3.30", PLD_FEATURE_LIGHT, PLD_OCCLUSION_RELATIVE, 330}}) {
     const Leaves leaves((one.features & PLD_FEATURE_SOLIDS) != 0);
     MethodChoice choice;
     choice.weight = kWeight;
@@ -235,7 +249,8 @@ TEST(BridgeRims, FrontAndTailTakesDarkRims) {
       worst = std::max(worst, std::abs(value - static_cast<double>(found[i])));
       darkened = std::max(darkened, static_cast<double>(open[i / 4][static_cast<int>(i % 4)]) - value);
     }
-    std::printf("rims under front+tail, %s: darkened by up to %.2f, off the method in double by %.2g\n", one.what, darkened, worst);
+    std::printf("rims under front+tail, %s: darkened by up to %.2f, off the method in double by %.2g\n", one.what,
+                darkened, worst);
     EXPECT_GT(darkened, .2);
     EXPECT_LT(worst, 2e-5);  // as without rims: float sums and a float quotient
   }
@@ -256,19 +271,26 @@ TEST(BridgeRims, PublishedTargetsTakeDarkRims) {
       const OitPlanes dark = folded(leaves.darkened(static_cast<int>(form))), open = folded(leaves.lists);
       const Image<glm::vec4> expected = compose(resolveOver(dark, {}, {}, leaves.gbuffer), leaves.gbuffer).rgba;
       std::vector<float> sums;
-      const std::vector<float> found =
-          bridged(leaves, {solids ? uint32_t{PLD_FEATURE_SOLIDS} : 0u, form, 450, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED}, &sums);
+      const std::vector<float> found = bridged(
+          leaves,
+          {solids ? uint32_t{PLD_FEATURE_SOLIDS} : 0u, form, 450, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED},
+          &sums);
       ASSERT_EQ(found.size(), 4 * expected.size());
       double off = 0, lost = 0, picture = 0;
       for (std::size_t i = 0; i < dark.radiance.size(); ++i)
         for (int c = 0; c < 3; ++c) {
-          const double value = static_cast<double>(dark.radiance[i][c]), brightest = std::max(static_cast<double>(open.radiance[i][c]), 1e-3);
-          off = std::max(off, std::abs(static_cast<double>(sums[4 * i + static_cast<std::size_t>(c)]) - value) / brightest);
+          const double value = static_cast<double>(dark.radiance[i][c]),
+                       brightest = std::max(static_cast<double>(open.radiance[i][c]), 1e-3);
+          off = std::max(off,
+                         std::abs(static_cast<double>(sums[4 * i + static_cast<std::size_t>(c)]) - value) / brightest);
           lost = std::max(lost, (brightest - value) / brightest);
-          picture = std::max(picture, std::abs(static_cast<double>(found[4 * i + static_cast<std::size_t>(c)]) - static_cast<double>(expected[i][c])));
+          picture = std::max(picture, std::abs(static_cast<double>(found[4 * i + static_cast<std::size_t>(c)]) -
+                                               static_cast<double>(expected[i][c])));
         }
-      std::printf("rims in the published tier%s, form %d: sums lose up to %.2f of themselves and are off the offline fold's by %.2g; picture %.2g\n",
-                  solids ? ", solids" : "", static_cast<int>(form), lost, off, picture);
+      std::printf(
+          "rims in the published tier%s, form %d: sums lose up to %.2f of themselves and are off the offline fold's by "
+          "%.2g; picture %.2g\n",
+          solids ? ", solids" : "", static_cast<int>(form), lost, off, picture);
       EXPECT_GT(lost, .4);
       EXPECT_LT(off, kLayers * std::ldexp(1.0, -10));  // halves, cut instead of rounded
       EXPECT_LT(picture, kLayers * 1.5 / 255);         // and a step of 8 bits for each layer
@@ -334,7 +356,8 @@ TEST(BridgeRims, WrongOcclusionIsRefused) {
   const auto refused = [&](auto change, pld_status expected) {
     pld_frame frame = good;
     change(frame);
-    EXPECT_STREQ(pld_status_name(pld_begin(pass, PLD_STAGE_LAYERS, &frame)), pld_status_name(expected)) << pld_message(pass);
+    EXPECT_STREQ(pld_status_name(pld_begin(pass, PLD_STAGE_LAYERS, &frame)), pld_status_name(expected))
+        << pld_message(pass);
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
   };
   refused([](auto& f) { f.struct_size = offsetof(pld_frame, occlusion_texture); }, PLD_ERROR_TEXTURE);

@@ -18,7 +18,8 @@ TEST(BridgeShadow, TheTextsCompileAsEveryVersion) {
   GlContext context;
   Host host(16, 16);
   pld_create_info create = host.info();
-  create.features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_SOLIDS;
+  create.features =
+      PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_SOLIDS;
   pld_pass* pass = host.create(create);
   ASSERT_NE(pass, nullptr);
   int compiled = 0;
@@ -31,10 +32,13 @@ TEST(BridgeShadow, TheTextsCompileAsEveryVersion) {
       ASSERT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_LOOKUP, version, &lookup), PLD_OK);
       ASSERT_EQ(pld_glsl(pass, PLD_STAGE_LAYERS, version, &layers), PLD_OK);
       const std::string first = "#version " + std::to_string(version) + " core\n";
-      const GLuint one = makeProgram(kFullscreenVertex, first + caster + caster + "struct Surface { int steps; };\n" + kPlainCaster);
-      const GLuint both = makeProgram(kFullscreenVertex, first + layers + lookup + lookup +
-                                                             "float hashOf(float x) { return x; }\nvoid main() {\n  vec3 p = vec3(gl_FragCoord.xy, -hashOf(3.0));\n"
-                                                             "  pldWriteFragment(pldSurface(pldShadow(1, p) + pldShadowOnOpaque(2, p), 0.5, vec3(0.5), p));\n}\n");
+      const GLuint one =
+          makeProgram(kFullscreenVertex, first + caster + caster + "struct Surface { int steps; };\n" + kPlainCaster);
+      const GLuint both = makeProgram(
+          kFullscreenVertex,
+          first + layers + lookup + lookup +
+              "float hashOf(float x) { return x; }\nvoid main() {\n  vec3 p = vec3(gl_FragCoord.xy, -hashOf(3.0));\n"
+              "  pldWriteFragment(pldSurface(pldShadow(1, p) + pldShadowOnOpaque(2, p), 0.5, vec3(0.5), p));\n}\n");
       ASSERT_NE(one, 0u) << version;
       ASSERT_NE(both, 0u) << version;
       EXPECT_EQ(pld_connect(pass, one), PLD_OK);
@@ -95,7 +99,8 @@ TEST(BridgeShadow, WrongCallsAreRefused) {
   info([](auto& i) { i.form = PLD_SHADOW_NAIVE, i.size = 4096, i.faces = 96; }, PLD_ERROR_SIZE, "too many texels");
   info([](auto& i) { i.uniform_binding = 1u << 20; }, PLD_ERROR_ARGUMENT, "binding");
   info([](auto& i) { i.uniform_binding = 3; }, PLD_ERROR_ARGUMENT, "the seam's binding");
-  for (const uint32_t unit : {4u, 6u, 1u << 20}) info([&](auto& i) { i.texture_unit = unit; }, PLD_ERROR_ARGUMENT, "the seam's unit");
+  for (const uint32_t unit : {4u, 6u, 1u << 20})
+    info([&](auto& i) { i.texture_unit = unit; }, PLD_ERROR_ARGUMENT, "the seam's unit");
   ASSERT_EQ(pld_shadow_resize(pass, &good), PLD_OK) << pld_message(pass);
   expectRefused(pld_shadow_glsl(pass, static_cast<pld_shadow_text>(2), 330, &text), PLD_ERROR_ARGUMENT, "no text");
   expectRefused(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_CASTER, 320, &text), PLD_ERROR_ARGUMENT, "no GLSL");
@@ -122,12 +127,14 @@ TEST(BridgeShadow, WrongCallsAreRefused) {
   view([](auto& v) { v.projection[0] = 0.0f; }, PLD_ERROR_ARGUMENT, "no focal length");
   view([](auto& v) { v.far_depth = v.near_depth; }, PLD_ERROR_ARGUMENT, "no depth");
   view([](auto& v) { v.kind = PLD_LIGHT_LOCAL; }, PLD_ERROR_ARGUMENT, "a spot without perspective");
-  view([](auto& v) {
-    v.kind = PLD_LIGHT_LOCAL;
-    v.faces = 6;
-    v.projection[11] = -1.0f;
-    v.projection[15] = 0.0f;
-  }, PLD_ERROR_ARGUMENT, "a cube's face of 90 degrees");
+  view(
+      [](auto& v) {
+        v.kind = PLD_LIGHT_LOCAL;
+        v.faces = 6;
+        v.projection[11] = -1.0f;
+        v.projection[15] = 0.0f;
+      },
+      PLD_ERROR_ARGUMENT, "a cube's face of 90 degrees");
   view([](auto& v) { v.depth_texture = 4711; }, PLD_ERROR_TEXTURE, "no texture");
   view([&](auto& v) { v.depth_texture = byte; }, PLD_ERROR_FORMAT, "bytes");
   view([&](auto& v) { v.depth_texture = small; }, PLD_ERROR_SIZE, "small depth");
@@ -171,7 +178,9 @@ TEST(BridgeShadow, NothingDrawnIsNoShadow) {
   glCreateVertexArrays(1, &array);
   pld_shadow_view view = plainShadowView();
   const std::vector<float> below = {.1f, .2f, -5, 0}, above = {.1f, .2f, -1, 0}, beside = {1.5f, .2f, -5, 0};
-  const auto red = [&](int light, const std::vector<float>& point) { return askShadows(pass, info, light, point, false)[0]; };
+  const auto red = [&](int light, const std::vector<float>& point) {
+    return askShadows(pass, info, light, point, false)[0];
+  };
   for (const int light : {-1, 0, 1, 2, 1000}) EXPECT_EQ(red(light, below), 1.0f);
   for (const float opaque : {1.0f, 0.0f}) {  // behind the casters, which are drawn at .75; before them
     glClearTexImage(depth, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &opaque);
@@ -232,7 +241,8 @@ void main() {
   position = vec3(lightFromScene * vec4(corner, 1.0));
   gl_Position = projection * vec4(position, 1.0);
 }
-)", version + caster + R"(
+)",
+                                     version + caster + R"(
 uniform mat4 lightFromScene;
 uniform vec3 colour;
 uniform uint instance;
@@ -336,7 +346,8 @@ void main() {
   double worst = 0;
   int counts[4] = {};
   for (int i = 0; i < wide * high; ++i) {
-    const glm::vec2 at((static_cast<float>(i % wide) + .5f) / wide * 2 - 1, (static_cast<float>(i / wide) + .5f) / high * 2 - 1);
+    const glm::vec2 at((static_cast<float>(i % wide) + .5f) / wide * 2 - 1,
+                       (static_cast<float>(i / wide) + .5f) / high * 2 - 1);
     const glm::vec3 ray(at.x / drawn.projection[0], at.y / drawn.projection[5], -1);
     const float t = kFloor / ray.y;
     if (!(ray.y < 0) || t >= 20) continue;
@@ -346,17 +357,19 @@ void main() {
     for (int k = 0; k < 2; ++k) {
       const Pane& pane = kPanes[k];
       const glm::vec3 p = ray * t - kSun * (pane.y - kFloor) / -kSun.y;
-      const float inside = std::min(std::min(p.x - pane.left, pane.right - p.x), std::min(p.z - pane.back, pane.front - p.z));
+      const float inside =
+          std::min(std::min(p.x - pane.left, pane.right - p.x), std::min(p.z - pane.back, pane.front - p.z));
       atEdge = atEdge || std::abs(inside) < soft;
       if (inside > 0) expected *= pane.colour, which |= 1 << k;
     }
     if (atEdge) continue;
     ++counts[which];
     for (int c = 0; c < 3; ++c)
-      worst = std::max(worst, std::abs(static_cast<double>(lit[static_cast<std::size_t>(4 * i + c)]) - .8 * static_cast<double>(expected[c])));
+      worst = std::max(worst, std::abs(static_cast<double>(lit[static_cast<std::size_t>(4 * i + c)]) -
+                                       .8 * static_cast<double>(expected[c])));
   }
-  std::printf("floor: %d pixels lit freely, %d and %d through one pane, %d through both, off by at most %.2g\n", counts[0], counts[1],
-              counts[2], counts[3], worst);
+  std::printf("floor: %d pixels lit freely, %d and %d through one pane, %d through both, off by at most %.2g\n",
+              counts[0], counts[1], counts[2], counts[3], worst);
   for (const int count : counts) EXPECT_GT(count, 50);
   EXPECT_LT(worst, 4e-4);  // optical depth in steps of 1/4096
 
@@ -365,7 +378,8 @@ void main() {
   for (int y = high - 1; y >= 0; --y)
     for (int x = 0; x < wide; ++x)
       for (int c = 0; c < 3; ++c)
-        file.put(static_cast<char>(std::lround(255 * std::pow(std::min(1.0f, picture[static_cast<std::size_t>(4 * (y * wide + x) + c)]), 1 / 2.2f))));
+        file.put(static_cast<char>(std::lround(
+            255 * std::pow(std::min(1.0f, picture[static_cast<std::size_t>(4 * (y * wide + x) + c)]), 1 / 2.2f))));
   const GLuint programs[] = {casters, floorProgram, paneProgram};
   for (const GLuint program : programs) glDeleteProgram(program);
   pld_destroy(&pass);

@@ -102,7 +102,8 @@ pld_shadow_view plainShadowView() {
   return view;
 }
 
-std::vector<pld_shadow_view> shadowViews(const Scene& scene, const Camera& camera, std::size_t light, int firstFace, int size) {
+std::vector<pld_shadow_view> shadowViews(const Scene& scene, const Camera& camera, std::size_t light, int firstFace,
+                                         int size) {
   LightViews all;
   std::vector<pld_shadow_view> views;
   const std::vector<LightView> faces = viewsOf(scene, light, size, all);
@@ -115,7 +116,8 @@ std::vector<pld_shadow_view> shadowViews(const Scene& scene, const Camera& camer
     view.first_face = firstFace;
     view.faces = static_cast<int>(faces.size());
     view.face = static_cast<int>(i);
-    const glm::mat4 from(faces[i].camera.viewFromWorld * glm::inverse(camera.viewFromWorld)), clip = projectionOf(faces[i], edge);
+    const glm::mat4 from(faces[i].camera.viewFromWorld * glm::inverse(camera.viewFromWorld)),
+        clip = projectionOf(faces[i], edge);
     std::memcpy(view.light_from_scene, &from[0][0], sizeof(from));
     std::memcpy(view.projection, &clip[0][0], sizeof(clip));
     const double offset = all.radial ? 0.0 : all.offset - all.scale * faces[i].back;
@@ -154,7 +156,8 @@ void drawCasters(pld_pass* pass, const pld_shadow_view& view, const Scene& scene
       glUseProgram(program);
       const glm::mat4 viewFromObject(placed[one.instance].viewFromObject);
       glUniformMatrix4fv(glGetUniformLocation(program, "viewFromObject"), 1, GL_FALSE, &viewFromObject[0][0]);
-      glUniformMatrix3fv(glGetUniformLocation(program, "normalFromObject"), 1, GL_FALSE, &placed[one.instance].normalFromObject[0][0]);
+      glUniformMatrix3fv(glGetUniformLocation(program, "normalFromObject"), 1, GL_FALSE,
+                         &placed[one.instance].normalFromObject[0][0]);
       glUniform1f(glGetUniformLocation(program, "thicknessScale"), placed[one.instance].thicknessScale);
       glUniform1ui(glGetUniformLocation(program, "instanceIdentity"), instance.identity);
       glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.firstTriangle * 3), static_cast<GLsizei>(one.triangles * 3));
@@ -165,17 +168,19 @@ void drawCasters(pld_pass* pass, const pld_shadow_view& view, const Scene& scene
   gl::checkGl("drawing casters through the C library");
 }
 
-std::vector<float> askShadows(pld_pass* pass, const pld_shadow_info& info, int light, const std::vector<float>& points, bool onOpaque,
-                              int version) {
+std::vector<float> askShadows(pld_pass* pass, const pld_shadow_info& info, int light, const std::vector<float>& points,
+                              bool onOpaque, int version) {
   const char* lookup = nullptr;
   EXPECT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_LOOKUP, version, &lookup), PLD_OK) << pld_message(pass);
   const int count = static_cast<int>(points.size() / 4);
   const GLuint places = makeTexture(GL_RGBA32F, count, 1), answers = makeTexture(GL_RGBA32F, count, 1);
   fillTexture(places, count, 1, GL_RGBA, points.data());
-  const std::string main = std::string("uniform sampler2D points;\nuniform int light;\nout vec4 answer;\nvoid main() {\n"
-                                       "  vec3 point = texelFetch(points, ivec2(gl_FragCoord.xy), 0).xyz;\n  answer = vec4(") +
+  const std::string main = std::string(
+                               "uniform sampler2D points;\nuniform int light;\nout vec4 answer;\nvoid main() {\n"
+                               "  vec3 point = texelFetch(points, ivec2(gl_FragCoord.xy), 0).xyz;\n  answer = vec4(") +
                            (onOpaque ? "pldShadowOnOpaque" : "pldShadow") + "(light, point), 1.0);\n}\n";
-  const GLuint program = makeProgram(kFullscreenVertex, "#version " + std::to_string(version) + " core\n" + lookup + main);
+  const GLuint program =
+      makeProgram(kFullscreenVertex, "#version " + std::to_string(version) + " core\n" + lookup + main);
   EXPECT_NE(program, 0u);
   EXPECT_EQ(pld_connect(pass, program), PLD_OK) << pld_message(pass);
   uint64_t texture = 0, buffer = 0;
@@ -209,8 +214,10 @@ std::vector<float> askShadows(pld_pass* pass, const pld_shadow_info& info, int l
 std::vector<float> shadowTexels(pld_pass* pass, int edge, int layers) {
   uint64_t texture = 0;
   EXPECT_EQ(pld_query(pass, PLD_VALUE_SHADOW_TEXTURE, &texture), PLD_OK);
-  std::vector<float> texels(std::size_t{4} * static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge) * static_cast<std::size_t>(layers));
-  glGetTextureImage(static_cast<GLuint>(texture), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
+  std::vector<float> texels(std::size_t{4} * static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge) *
+                            static_cast<std::size_t>(layers));
+  glGetTextureImage(static_cast<GLuint>(texture), 0, GL_RGBA, GL_FLOAT,
+                    static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
   return texels;
 }
 

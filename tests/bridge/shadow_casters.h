@@ -17,16 +17,18 @@ pld_shadow_view plainShadowView();
 // The main() of a caster that hides half of three quarters, a half and a quarter of the light, at a distance of 2.
 extern const char* const kPlainCaster;
 
-// Views of a light as the C++ rooms choose them for ShadowMapSettings::size; six have half the edge. Empty when nothing casts.
-std::vector<pld_shadow_view> shadowViews(const Scene& scene, const Camera& camera, std::size_t light, int firstFace, int size);
+// Views of a light as the C++ rooms choose them for ShadowMapSettings::size; six have half the edge. Empty when nothing
+// casts.
+std::vector<pld_shadow_view> shadowViews(const Scene& scene, const Camera& camera, std::size_t light, int firstFace,
+                                         int size);
 
 // Draws what a view sees, between a begin and an end of its own. Expects all calls to succeed.
 //   view  one of shadowViews(), by the same arguments
 void drawCasters(pld_pass* pass, const pld_shadow_view& view, const Scene& scene, std::size_t light, int size);
 
 // pldShadow() or, `onOpaque`, pldShadowOnOpaque(), of points, asked by a fragment shader.
-std::vector<float> askShadows(pld_pass* pass, const pld_shadow_info& info, int light, const std::vector<float>& points, bool onOpaque,
-                              int version = 450);
+std::vector<float> askShadows(pld_pass* pass, const pld_shadow_info& info, int light, const std::vector<float>& points,
+                              bool onOpaque, int version = 450);
 
 // The texels of a map, by layers.
 std::vector<float> shadowTexels(pld_pass* pass, int edge, int layers);

@@ -1,4 +1,5 @@
-// Shadow maps through the C library against those of the C++ rooms: the same casters, texel by texel and point by point.
+// Shadow maps through the C library against those of the C++ rooms: the same casters, texel by texel and point by
+// point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,8 +15,8 @@ namespace {
 
 using Form = ShadowMapSettings::Form;
 
-// No edge that runs through the middle of texels: what they belong to hangs on the last bit. A lamp that is 3 m from the farthest corner, straight above,
-// and casters 4 m wide: units of depth that float holds.
+// No edge that runs through the middle of texels: what they belong to hangs on the last bit. A lamp that is 3 m from
+// the farthest corner, straight above, and casters 4 m wide: units of depth that float holds.
 Scene sceneOf(bool coloured) {
   Scene scene;
   Primitive pane = quad(1, 2);
@@ -67,7 +68,8 @@ TEST(BridgeShadow, TheMapsAreThoseOfTheRooms) {
         const Scene all = sceneOf(coloured);
         Scene scene = all;
         scene.lights = {all.lights[light]};
-        const int faces = light == 2 ? 6 : 1, size = 512, edge = faces == 6 ? size / 2 : size, channels = coloured ? 3 : 1;
+        const int faces = light == 2 ? 6 : 1, size = 512, edge = faces == 6 ? size / 2 : size,
+                  channels = coloured ? 3 : 1;
         ShadowMapSettings settings;
         settings.form = form.room;
         settings.size = size;
@@ -78,7 +80,8 @@ TEST(BridgeShadow, TheMapsAreThoseOfTheRooms) {
         ASSERT_NE(pass, nullptr);
         const pld_shadow_info info = shadowInfo(form.library, edge, 1, faces, coloured);
         ASSERT_EQ(pld_shadow_resize(pass, &info), PLD_OK) << pld_message(pass);
-        for (const pld_shadow_view& view : shadowViews(scene, camera, 0, 0, size)) drawCasters(pass, view, scene, 0, size);
+        for (const pld_shadow_view& view : shadowViews(scene, camera, 0, 0, size))
+          drawCasters(pass, view, scene, 0, size);
         const bool filtered = form.library <= PLD_SHADOW_PUBLISHED;
         const int kept = filtered ? edge / 4 : edge;
         const std::vector<float> found = shadowTexels(pass, kept, faces * channels);
@@ -89,19 +92,21 @@ TEST(BridgeShadow, TheMapsAreThoseOfTheRooms) {
           for (int i = 0; i < kept * kept; ++i)
             for (int c = 0; c < channels; ++c)
               std::memcpy(&ours.texels[static_cast<std::size_t>((f * kept * kept + i) * channels + c)],
-                          &found[std::size_t{4} * static_cast<std::size_t>((f * channels + c) * kept * kept + i)], sizeof(glm::vec4));
+                          &found[std::size_t{4} * static_cast<std::size_t>((f * channels + c) * kept * kept + i)],
+                          sizeof(glm::vec4));
         std::size_t differ = 0, covered = 0, apart = 0;
         for (std::size_t i = 0; i < ours.texels.size(); ++i) {
           const int row = static_cast<int>(i) / (kept * channels) % kept;
-          // Rooms draw what they filter with seven rows more on either side, with casters beyond the face: no lookup goes there.
+          // Rooms draw what they filter with seven rows more on either side, with casters beyond the face: no lookup
+          // goes there.
           if (filtered && (row < 2 || row >= kept - 2)) continue;
           const glm::vec4 room = expected.texels[i];
           covered += room.y > 0.0f;
           differ += std::memcmp(&room, &ours.texels[i], sizeof(room)) != 0;
           apart += glm::length(room - ours.texels[i]) > 4e-6f;
         }
-        std::printf("%s, %s, light %zu: %zu texels, %zu with casters, %zu of other bits, %zu further apart than 4e-6\n", form.name,
-                    coloured ? "coloured" : "grey", light, ours.texels.size(), covered, differ, apart);
+        std::printf("%s, %s, light %zu: %zu texels, %zu with casters, %zu of other bits, %zu further apart than 4e-6\n",
+                    form.name, coloured ? "coloured" : "grey", light, ours.texels.size(), covered, differ, apart);
         EXPECT_GT(covered, 1000u);
         // And so window coordinates round otherwise, in the last bits.
         EXPECT_EQ(apart, 0u);
@@ -113,20 +118,23 @@ TEST(BridgeShadow, TheMapsAreThoseOfTheRooms) {
         Random random(1);
         std::vector<float> points;
         for (int i = 0; i < 1000; ++i) {
-          const glm::vec4 point(camera.viewFromWorld * glm::dvec4(random.between(-1.5, 1.5), random.between(-.5, 2.5), random.between(-1.5, 1.5), 1.0));
+          const glm::vec4 point(camera.viewFromWorld * glm::dvec4(random.between(-1.5, 1.5), random.between(-.5, 2.5),
+                                                                  random.between(-1.5, 1.5), 1.0));
           points.insert(points.end(), &point[0], &point[0] + 4);
         }
         for (const bool onOpaque : {false, true}) {
           const std::vector<float> answers = askShadows(pass, info, 0, points, onOpaque, light == 1 ? 330 : 450);
           int strays = 0, shadowed = 0;
           for (std::size_t i = 0; i < points.size(); i += 4) {
-            const glm::vec3 point(points[i], points[i + 1], points[i + 2]), answer(answers[i], answers[i + 1], answers[i + 2]);
+            const glm::vec3 point(points[i], points[i + 1], points[i + 2]),
+                answer(answers[i], answers[i + 1], answers[i + 2]);
             const glm::vec3 v = onOpaque ? ours.onOpaque(0, point) : ours.visibility(0, point);
             shadowed += v != glm::vec3(1.0f);
             strays += glm::length(answer - v) > 1e-4f;
           }
           EXPECT_GT(shadowed, 100);
-          // Where a point falls between two texels, or within the thinnest of slabs, rounding of the projection decides.
+          // Where a point falls between two texels, or within the thinnest of slabs, rounding of the projection
+          // decides.
           EXPECT_LE(strays, 12) << form.name << " " << light;
         }
         EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
@@ -178,9 +186,11 @@ TEST(BridgeShadow, TheFilterIsThatOfTheRooms) {
             }
             sum = shading::addToTent(sum, j, across);
           }
-          differ += std::memcmp(&sum, &filtered[std::size_t{4} * static_cast<std::size_t>((c * kept + y) * kept + x)], sizeof(sum)) != 0;
+          differ += std::memcmp(&sum, &filtered[std::size_t{4} * static_cast<std::size_t>((c * kept + y) * kept + x)],
+                                sizeof(sum)) != 0;
         }
-    std::printf("%s: %d filtered texels, %zu of other bits\n", coloured ? "coloured" : "grey", channels * kept * kept, differ);
+    std::printf("%s: %d filtered texels, %zu of other bits\n", coloured ? "coloured" : "grey", channels * kept * kept,
+                differ);
     EXPECT_EQ(differ, 0u);
     pld_destroy(&pass);
   }

@@ -34,14 +34,37 @@ struct Kind {
 };
 const Kind kKinds[] = {
     {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kAll, PLD_DEPTH_LINEAR, {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS}},
-    {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, kAll | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_LINEAR, {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
-    {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_LIGHT | PLD_FEATURE_RIMS, PLD_DEPTH_REVERSED, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
-    {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_LINEAR, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
+    {PLD_METHOD_PHENOMENOLOGICAL,
+     PLD_TIER_FLOAT,
+     kAll | PLD_FEATURE_LOW_RESOLUTION,
+     PLD_DEPTH_LINEAR,
+     {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
+    {PLD_METHOD_FRONT_TAIL,
+     PLD_TIER_HALF,
+     PLD_FEATURE_LIGHT | PLD_FEATURE_RIMS,
+     PLD_DEPTH_REVERSED,
+     {PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
+    {PLD_METHOD_FRONT_TAIL,
+     PLD_TIER_HALF,
+     PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
+     PLD_DEPTH_LINEAR,
+     {PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
     {PLD_METHOD_WEIGHTED, PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS, PLD_DEPTH_DEVICE, {PLD_STAGE_LAYERS}},
-    {PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, PLD_FEATURE_RIMS | PLD_FEATURE_LIGHT, PLD_DEPTH_DEVICE, {PLD_STAGE_LAYERS, PLD_STAGE_RIMS}},
-    {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_SOLIDS, PLD_DEPTH_REVERSED, {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
+    {PLD_METHOD_WEIGHTED,
+     PLD_TIER_FLOAT,
+     PLD_FEATURE_RIMS | PLD_FEATURE_LIGHT,
+     PLD_DEPTH_DEVICE,
+     {PLD_STAGE_LAYERS, PLD_STAGE_RIMS}},
+    {PLD_METHOD_WEIGHTED,
+     PLD_TIER_HALF,
+     PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_SOLIDS,
+     PLD_DEPTH_REVERSED,
+     {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
     {PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, PLD_DEPTH_DEVICE, {PLD_STAGE_LAYERS}},
-    {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, kAll | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_REVERSED,
+    {PLD_METHOD_PHENOMENOLOGICAL,
+     PLD_TIER_EXACT,
+     kAll | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
+     PLD_DEPTH_REVERSED,
      {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}}};
 
 // What a host's own draws change: culling and the like, which it puts back itself.
@@ -141,7 +164,9 @@ TEST(BridgeState, EveryCallLeavesGlAsItFoundIt) {
     watch.unchanged("pld_resolve");
     for (int view = PLD_VIEW_LAYER_COUNT; view <= PLD_VIEW_LOW_DEPTH; ++view) {
       target.view = static_cast<pld_view>(view);
-      const pld_stage needed = view <= PLD_VIEW_SOLID ? PLD_STAGE_LAYERS : view <= PLD_VIEW_RIM_LOSS ? PLD_STAGE_RIMS : PLD_STAGE_LOW;
+      const pld_stage needed = view <= PLD_VIEW_SOLID      ? PLD_STAGE_LAYERS
+                               : view <= PLD_VIEW_RIM_LOSS ? PLD_STAGE_RIMS
+                                                           : PLD_STAGE_LOW;
       const bool has = std::find(setup.stages.begin(), setup.stages.end(), needed) != setup.stages.end();
       EXPECT_EQ(pld_resolve(pass, &target), has ? PLD_OK : PLD_ERROR_UNSUPPORTED) << pld_message(pass);
       watch.unchanged("pld_resolve of a view");
@@ -269,8 +294,9 @@ TEST(BridgeState, ShadowCallsLeaveGlAsTheyFoundIt) {
     }
     const char* lookup = nullptr;
     EXPECT_EQ(pld_shadow_glsl(pass, PLD_SHADOW_TEXT_LOOKUP, 330, &lookup), PLD_OK);
-    const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + lookup +
-                                                              "out vec4 c;\nvoid main() { c = vec4(pldShadow(0, gl_FragCoord.xyz), 1.0); }\n");
+    const GLuint program = makeProgram(
+        kFullscreenVertex, std::string("#version 330 core\n") + lookup +
+                               "out vec4 c;\nvoid main() { c = vec4(pldShadow(0, gl_FragCoord.xyz), 1.0); }\n");
     EXPECT_EQ(pld_connect(pass, program), PLD_OK);
     watch.unchanged("pld_shadow_glsl, pld_connect");
     EXPECT_EQ(pld_shadow_resize(pass, nullptr), PLD_OK);
@@ -278,7 +304,8 @@ TEST(BridgeState, ShadowCallsLeaveGlAsTheyFoundIt) {
     EXPECT_EQ(pld_destroy(&pass), PLD_OK);
     watch.unchanged("pld_destroy");
     glPopDebugGroup();
-    std::printf("state: %zu pieces of state equal after each of %d steps with shadow maps\n", watch.before.size(), watch.calls);
+    std::printf("state: %zu pieces of state equal after each of %d steps with shadow maps\n", watch.before.size(),
+                watch.calls);
   }
 }
 
@@ -387,7 +414,8 @@ TEST(BridgeState, BuffersThatTheHostDeletesMeanwhileAreNotBoundAgain) {
   ASSERT_NE(pass, nullptr);
   GLuint buffers[2] = {};
   glGenBuffers(2, buffers);
-  const std::pair<GLenum, GLuint> places[] = {{GL_SHADER_STORAGE_BUFFER, info.storage_binding}, {GL_UNIFORM_BUFFER, info.uniform_binding}};
+  const std::pair<GLenum, GLuint> places[] = {{GL_SHADER_STORAGE_BUFFER, info.storage_binding},
+                                              {GL_UNIFORM_BUFFER, info.uniform_binding}};
   for (int i = 0; i < 2; ++i) {
     glBindBuffer(places[i].first, buffers[i]);
     glBufferData(places[i].first, 256, nullptr, GL_STATIC_DRAW);

@@ -67,12 +67,12 @@ pld_proc counted(void*, const char* wanted) {
   const std::string name = wanted;
   const pld_proc real = procAddress(nullptr, wanted);
   if (!real) return nullptr;
-#define PLD_COUNT(function, type)                               \
-  if (name == "gl" #function) {                                 \
-    using One = Counted<__COUNTER__, type>;                     \
-    One::real = reinterpret_cast<type>(real);                   \
-    One::name = "gl" #function;                                 \
-    return reinterpret_cast<pld_proc>(&One::call);              \
+#define PLD_COUNT(function, type)                  \
+  if (name == "gl" #function) {                    \
+    using One = Counted<__COUNTER__, type>;        \
+    One::real = reinterpret_cast<type>(real);      \
+    One::name = "gl" #function;                    \
+    return reinterpret_cast<pld_proc>(&One::call); \
   }
   PLD_GL_REQUIRED(PLD_COUNT)
   PLD_GL_OPTIONAL(PLD_COUNT)
@@ -89,8 +89,8 @@ pld_status inside(F f) {
 }
 
 bool makes(const std::string& name) {
-  for (const char* kind : {"glGen", "glCreate", "glDelete", "glTexImage", "glTexStorage", "glBufferData", "glCompileShader",
-                           "glLinkProgram", "glShaderSource"})
+  for (const char* kind : {"glGen", "glCreate", "glDelete", "glTexImage", "glTexStorage", "glBufferData",
+                           "glCompileShader", "glLinkProgram", "glShaderSource"})
     if (name.rfind(kind, 0) == 0) return true;
   return false;
 }
@@ -104,15 +104,23 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     std::vector<pld_stage> stages;
   };
   const Kind kinds[] = {
-      {"float, all phenomena", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
-       PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION |
-           PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
+      {"float, all phenomena",
+       PLD_METHOD_PHENOMENOLOGICAL,
+       PLD_TIER_FLOAT,
+       PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
+           PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
        {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
-      {"half, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, {PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
+      {"half, front+tail",
+       PLD_METHOD_FRONT_TAIL,
+       PLD_TIER_HALF,
+       PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
+       {PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_LOW}},
       {"published", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION, {PLD_STAGE_LAYERS}},
-      {"exact, all phenomena", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT,
-       PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION |
-           PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
+      {"exact, all phenomena",
+       PLD_METHOD_PHENOMENOLOGICAL,
+       PLD_TIER_EXACT,
+       PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
+           PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
        {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
       {"exact, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, {PLD_STAGE_LAYERS}}};
   GlContext context;
@@ -133,7 +141,8 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     calls.clear();
     pld_pass* pass = host.create(info);
     ASSERT_NE(pass, nullptr);
-    const pld_shadow_info maps = shadowInfo(kind.tier == PLD_TIER_HALF ? PLD_SHADOW_NAIVE : PLD_SHADOW_VARIANCE, 32, 1, 1, kind.features != 0);
+    const pld_shadow_info maps =
+        shadowInfo(kind.tier == PLD_TIER_HALF ? PLD_SHADOW_NAIVE : PLD_SHADOW_VARIANCE, 32, 1, 1, kind.features != 0);
     ASSERT_EQ(pld_shadow_resize(pass, &maps), PLD_OK) << pld_message(pass);
     int made = 0, total = 0;
     for (const auto& [name, count] : calls) made += makes(name) ? count : 0;
@@ -173,8 +182,8 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
       total += count;
       if (makes(name)) made += count, which += name + " ";
     }
-    std::printf("steady state, %s: 20 frames, %d GL calls, %d objects made or resized, %zu allocations\n", kind.what, total,
-                made, allocations);
+    std::printf("steady state, %s: 20 frames, %d GL calls, %d objects made or resized, %zu allocations\n", kind.what,
+                total, made, allocations);
     EXPECT_EQ(made, 0) << which;
     EXPECT_EQ(allocations, 0u);
     EXPECT_GT(total, 1000);

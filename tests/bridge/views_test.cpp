@@ -52,7 +52,8 @@ double worstOf(const std::vector<float>& picture, int width, F expected) {
 // A leaf of coverage 1/2 before a wall at its depth whose occlusion leaves half (in 8 bits): the rim's is the same.
 TEST(BridgeViews, RimsShowTheirOcclusionAndWhatItTakes) {
   GlContext context;
-  for (const uint32_t extra : {0u, uint32_t{PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION}}) {
+  for (const uint32_t extra :
+       {0u, uint32_t{PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION}}) {
     Host host(kWidth, kHeight);
     pld_create_info info = host.info();
     info.features = PLD_FEATURE_RIMS | extra;
@@ -65,20 +66,24 @@ TEST(BridgeViews, RimsShowTheirOcclusionAndWhatItTakes) {
         "void main() {\n"
         "  float z = -10.0;\n"
         "  vec3 around = vec3(0.1, 0.15, 0.2);\n"
-        "  if (gl_FragCoord.x < 32.0) pldWriteRim(pldSurface(vec3(0.2), 0.5, vec3(0.0), vec3(0.0, 0.0, z)), around, vec2(0.0));\n"
+        "  if (gl_FragCoord.x < 32.0) pldWriteRim(pldSurface(vec3(0.2), 0.5, vec3(0.0), vec3(0.0, 0.0, z)), around, "
+        "vec2(0.0));\n"
         "  else pldWriteFragment(pldSurface(vec3(0.2), 0.5, vec3(0.0), vec3(0.0, 0.0, z)));\n"
         "}\n";
     for (const pld_stage stage : {PLD_STAGE_LAYERS, PLD_STAGE_RIMS}) draw(pass, stage, frame, main);
     constexpr double open = 128.0 / 255.0;
     const double around[3] = {.1, .15, .2}, background[3] = {.5, .4, .3};
-    const double occlusion = worstOf(seen(host, pass, PLD_VIEW_RIM_OCCLUSION), kWidth,
-                                     [&](int x, int, int c) { return x >= 32 || c == 2 ? 0.0 : c == 0 ? 1 - open : open; });
+    const double occlusion = worstOf(seen(host, pass, PLD_VIEW_RIM_OCCLUSION), kWidth, [&](int x, int, int c) {
+      return x >= 32 || c == 2 ? 0.0 : c == 0 ? 1 - open : open;
+    });
     const double loss = worstOf(seen(host, pass, PLD_VIEW_RIM_LOSS), kWidth,
                                 [&](int x, int, int c) { return x >= 32 ? 0.0 : (1 - open) * around[c]; });
     // And the picture has lost just that.
-    const double picture = worstOf(seen(host, pass, PLD_VIEW_PICTURE), kWidth,
-                                   [&](int x, int, int c) { return .2 + .5 * background[c] - (x >= 32 ? 0.0 : (1 - open) * around[c]); });
-    std::printf("views of rims: occlusion off by %.2g, loss by %.2g, the picture without it by %.2g\n", occlusion, loss, picture);
+    const double picture = worstOf(seen(host, pass, PLD_VIEW_PICTURE), kWidth, [&](int x, int, int c) {
+      return .2 + .5 * background[c] - (x >= 32 ? 0.0 : (1 - open) * around[c]);
+    });
+    std::printf("views of rims: occlusion off by %.2g, loss by %.2g, the picture without it by %.2g\n", occlusion, loss,
+                picture);
     EXPECT_LT(occlusion, 1e-6);
     EXPECT_LT(loss, 1e-6);
     EXPECT_LT(picture, 1e-6);
@@ -101,19 +106,24 @@ TEST(BridgeViews, LowLayersAreShownTexelByTexel) {
       pld_frame frame = host.frame();
       frame.low_factor = factor;
       const int edge = kWidth / 3 / factor;  // texels
-      draw(pass, PLD_STAGE_LAYERS, frame, "void main() { discard; pldWriteFragment(pldSurface(vec3(0.0), 0.5, vec3(0.0), vec3(0.0, 0.0, -3.0))); }\n");
+      draw(pass, PLD_STAGE_LAYERS, frame,
+           "void main() { discard; pldWriteFragment(pldSurface(vec3(0.0), 0.5, vec3(0.0), vec3(0.0, 0.0, -3.0))); }\n");
       const std::string main = "void main() {\n  if (gl_FragCoord.x > " + std::to_string(edge) +
-                               ".0) discard;\n  pldWriteFragment(pldSurface(vec3(0.2, 0.1, 0.05), 0.5, vec3(0.5, 0.25, 0.75), vec3(0.0, 0.0, -2.0)));\n}\n";
+                               ".0) discard;\n  pldWriteFragment(pldSurface(vec3(0.2, 0.1, 0.05), 0.5, vec3(0.5, 0.25, "
+                               "0.75), vec3(0.0, 0.0, -2.0)));\n}\n";
       draw(pass, PLD_STAGE_LOW, frame, main);
       const double o[3] = {.25, .375, .125}, light[3] = {.2, .1, .05};
       const bool half = tier == PLD_TIER_HALF;
       const auto inside = [&](int x) { return x / factor < edge; };
-      const double colour = worstOf(seen(host, pass, PLD_VIEW_LOW_COLOUR), kWidth, [&](int x, int, int c) { return inside(x) ? light[c] : 0.0; });
-      const double left = worstOf(seen(host, pass, PLD_VIEW_LOW_TRANSMISSION), kWidth, [&](int x, int, int c) { return inside(x) ? 1 - o[c] : 1.0; });
-      const double depth = worstOf(seen(host, pass, PLD_VIEW_LOW_DEPTH), kWidth,
-                                   [&](int x, int, int c) { return !inside(x) ? 0.0 : c == 2 ? 10.0 / 11.0 : 2.0 / 3.0; });
-      std::printf("views of low resolution, 1/%d, %s: colour off by %.2g, transmission by %.2g, depths by %.2g\n", factor, half ? "half" : "float",
-                  colour, left, depth);
+      const double colour = worstOf(seen(host, pass, PLD_VIEW_LOW_COLOUR), kWidth,
+                                    [&](int x, int, int c) { return inside(x) ? light[c] : 0.0; });
+      const double left = worstOf(seen(host, pass, PLD_VIEW_LOW_TRANSMISSION), kWidth,
+                                  [&](int x, int, int c) { return inside(x) ? 1 - o[c] : 1.0; });
+      const double depth = worstOf(seen(host, pass, PLD_VIEW_LOW_DEPTH), kWidth, [&](int x, int, int c) {
+        return !inside(x) ? 0.0 : c == 2 ? 10.0 / 11.0 : 2.0 / 3.0;
+      });
+      std::printf("views of low resolution, 1/%d, %s: colour off by %.2g, transmission by %.2g, depths by %.2g\n",
+                  factor, half ? "half" : "float", colour, left, depth);
       // Half floats round every sum to 2^-11.
       const double most = half ? std::ldexp(1.0, -10) : 1e-6;
       EXPECT_LT(colour, most);
@@ -131,7 +141,9 @@ TEST(BridgeViews, LowLayersAreShownTexelByTexel) {
 // A caster 2 m away that hides half of 3/4, 1/2 and 1/4, on the left half of the map.
 TEST(BridgeViews, FacesOfShadowMapsAreShownTexelByTexel) {
   GlContext context;
-  const std::string half = std::string(kPlainCaster).insert(std::string(kPlainCaster).find('{') + 1, "\n  if (gl_FragCoord.x > 32.0) discard;\n");
+  const std::string half =
+      std::string(kPlainCaster)
+          .insert(std::string(kPlainCaster).find('{') + 1, "\n  if (gl_FragCoord.x > 32.0) discard;\n");
   for (const pld_shadow_form form : {PLD_SHADOW_VARIANCE, PLD_SHADOW_NAIVE, PLD_SHADOW_CORRECTED})
     for (const bool coloured : {true, false})
       for (const bool local : {false, true}) {
@@ -169,8 +181,9 @@ TEST(BridgeViews, FacesOfShadowMapsAreShownTexelByTexel) {
           EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
           return host.picture();
         };
-        const std::vector<float> transmission = shown(PLD_VIEW_SHADOW_TRANSMISSION), coins = shown(PLD_VIEW_SHADOW_COINS),
-                                 depth = shown(PLD_VIEW_SHADOW_DEPTH), texels = shadowTexels(pass, edge, 2 * channels);
+        const std::vector<float> transmission = shown(PLD_VIEW_SHADOW_TRANSMISSION),
+                                 coins = shown(PLD_VIEW_SHADOW_COINS), depth = shown(PLD_VIEW_SHADOW_DEPTH),
+                                 texels = shadowTexels(pass, edge, 2 * channels);
         // Every texel of the face is what the map holds, and nothing beyond its edge is touched.
         std::size_t wrong = 0;
         double closed = 0, sum[3] = {}, hollow = 0;
@@ -178,11 +191,13 @@ TEST(BridgeViews, FacesOfShadowMapsAreShownTexelByTexel) {
           for (int x = 0; x < edge; ++x)
             for (int c = 0; c < 3; ++c) {
               const auto pixel = static_cast<std::size_t>(4 * (y * 64 + x) + c);
-              const float* texel = &texels[static_cast<std::size_t>(4 * ((((coloured ? c : 0) + channels) * edge + y) * edge + x))];
+              const float* texel =
+                  &texels[static_cast<std::size_t>(4 * ((((coloured ? c : 0) + channels) * edge + y) * edge + x))];
               const float mean = texel[1] > 0 ? texel[2] / texel[1] : 0.0f;
               wrong += transmission[pixel] != 1.0f - texel[0];
               wrong += coins[pixel] != texel[1];
-              wrong += !(texel[1] > 0) ? depth[pixel] != 0.0f : std::abs(depth[pixel] - (local ? mean : .5f + .5f * mean)) > 1e-6f;
+              wrong += !(texel[1] > 0) ? depth[pixel] != 0.0f
+                                       : std::abs(depth[pixel] - (local ? mean : .5f + .5f * mean)) > 1e-6f;
               // The tent reaches two texels across the edge.
               const bool inside = x < edge / 2 - 2, outside = x >= edge / 2 + 2;
               const double rho = .5 * (.75 - .25 * (coloured ? c : 0));
@@ -191,13 +206,18 @@ TEST(BridgeViews, FacesOfShadowMapsAreShownTexelByTexel) {
                 if (texel[1] > 0) closed = std::max(closed, std::abs(static_cast<double>(depth[pixel]) - .5));
                 sum[c] += static_cast<double>(coins[pixel]);
               }
-              if (outside) hollow = std::max({hollow, 1.0 - static_cast<double>(transmission[pixel]), static_cast<double>(depth[pixel])});
+              if (outside)
+                hollow = std::max(
+                    {hollow, 1.0 - static_cast<double>(transmission[pixel]), static_cast<double>(depth[pixel])});
             }
         const double count = (edge / 2 - 4) * (edge - 4);
         double share = 0;
-        for (int c = 0; c < 3; ++c) share = std::max(share, std::abs(sum[c] / count - .5 * (.75 - .25 * (coloured ? c : 0))));
-        std::printf("views of shadow maps, form %d%s%s: transmission and depth off by %.2g at most, coins by %.2g on the average\n",
-                    static_cast<int>(form), coloured ? ", coloured" : "", local ? ", local" : "", closed, share);
+        for (int c = 0; c < 3; ++c)
+          share = std::max(share, std::abs(sum[c] / count - .5 * (.75 - .25 * (coloured ? c : 0))));
+        std::printf(
+            "views of shadow maps, form %d%s%s: transmission and depth off by %.2g at most, coins by %.2g on the "
+            "average\n",
+            static_cast<int>(form), coloured ? ", coloured" : "", local ? ", local" : "", closed, share);
         EXPECT_EQ(wrong, 0u);
         EXPECT_LT(closed, 1e-3);  // a step of optical depth is 1/4096, rounded up or down at random
         EXPECT_EQ(hollow, 0.0);
@@ -225,7 +245,8 @@ TEST(BridgeViews, WrongViewsAreRefused) {
   pld_target target = host.target();
   const auto refused = [&](int view, pld_status expected) {
     target.view = static_cast<pld_view>(view);
-    EXPECT_STREQ(pld_status_name(pld_resolve(pass, &target)), pld_status_name(expected)) << view << ": " << pld_message(pass);
+    EXPECT_STREQ(pld_status_name(pld_resolve(pass, &target)), pld_status_name(expected))
+        << view << ": " << pld_message(pass);
     EXPECT_GT(std::string(pld_message(pass)).size(), 10u);
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
   };

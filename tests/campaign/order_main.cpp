@@ -111,11 +111,10 @@ bool report(const std::string& name, const Board& board) {
                nameOf(kTiers[t]), one.turns + two.turns, std::min(one.leastChunks, two.leastChunks),
                std::max(one.mostChunks, two.mostChunks), std::max(one.mostTiles, two.mostTiles), one.values,
                changedPlanes, error, std::max(one.error99, two.error99), changedPicture,
-               std::max(one.worstPictureChange, two.worstPictureChange),
-               one.digest == two.digest ? "same" : "differ");
+               std::max(one.worstPictureChange, two.worstPictureChange), one.digest == two.digest ? "same" : "differ");
     if (kTiers[t] == Tier::exact)
-      holds = holds && changedPlanes == 0 && error <= kExactError && one.digest == two.digest &&
-              one.values == two.values;
+      holds =
+          holds && changedPlanes == 0 && error <= kExactError && one.digest == two.digest && one.values == two.values;
   }
   std::fflush(stdout);
   return holds;

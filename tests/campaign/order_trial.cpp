@@ -24,8 +24,8 @@ std::vector<float> valuesOf(const OitPlanes& planes) {
     for (std::size_t i = 0; i < plane.size(); ++i)
       for (int c = 0; c < 4; ++c) values.push_back(plane[i][c]);
   };
-  for (const Image<glm::vec4>* plane :
-       {&planes.radiance, &planes.weight, &planes.opacity, &planes.depth, &planes.light, &planes.refraction, &planes.solid})
+  for (const Image<glm::vec4>* plane : {&planes.radiance, &planes.weight, &planes.opacity, &planes.depth, &planes.light,
+                                        &planes.refraction, &planes.solid})
     add(*plane);
   for (const Image<float>* plane : {&planes.frontZ, &planes.diffuseZ})
     for (std::size_t i = 0; i < plane->size(); ++i) values.push_back((*plane)[i]);
@@ -56,8 +56,8 @@ OitPlanes drawn(TransparentPass& pass, const OrderShot& shot, Tier tier, const P
     return pass.accumulate(own);
   }
   OitPlanes planes = emptyPlanes(shot.gbuffer.display, shot.gbuffer.data);
-  pass.fragments(settings,
-                 [&](const FragmentLists& lists) { foldExact(lists, settings.weight, settings.normalisation, planes); });
+  pass.fragments(
+      settings, [&](const FragmentLists& lists) { foldExact(lists, settings.weight, settings.normalisation, planes); });
   return planes;
 }
 
@@ -173,8 +173,7 @@ OrderResult runOrderTrial(TransparentPass& pass, const OrderShot& shot, Tier tie
     result.mostTiles = std::max<std::uint64_t>(result.mostTiles, statistics.tiles);
     ++result.turns;
     if (result.turns % kProgressEvery == 0)
-      std::fprintf(stderr, "  %s: turn %llu\n", nameOf(tier),
-                   static_cast<unsigned long long>(turn));
+      std::fprintf(stderr, "  %s: turn %llu\n", nameOf(tier), static_cast<unsigned long long>(turn));
     const std::vector<float> values = valuesOf(planes);
     bool changed = values.size() != first.size();
     for (std::size_t i = 0; i < std::min(values.size(), first.size()); ++i)

@@ -35,7 +35,9 @@ struct Marks {
   std::uint8_t* picture;
 };
 // Most values that a picture of so many pixels marks.
-constexpr std::size_t planeValues(std::size_t pixels) { return pixels * 32; }
+constexpr std::size_t planeValues(std::size_t pixels) {
+  return pixels * 32;
+}
 
 // Which turns a part plays. A turn's number decides its order, chunk size and tile size.
 struct TurnRange {

@@ -52,15 +52,16 @@ glm::vec4 colourOf(Random& random) {
 Stage stacksScene(std::uint64_t seed) {
   Stage stage(kColumns * kCellWidth, kRows * kCellHeight);
   stage.gbuffer.viewZ = Image<float>(stage.gbuffer.data.width(), stage.gbuffer.data.height(), 500.0f);
-  stage.gbuffer.beauty = Image<glm::vec4>(stage.gbuffer.data.width(), stage.gbuffer.data.height(),
-                                          glm::vec4(0.3f, 0.5f, 0.2f, 1.0f));
+  stage.gbuffer.beauty =
+      Image<glm::vec4>(stage.gbuffer.data.width(), stage.gbuffer.data.height(), glm::vec4(0.3f, 0.5f, 0.2f, 1.0f));
   Random random(seed);
   Material light = unlitBlend(glm::vec3(1), 1.0f);
   light.additive = true;
   // Solid quads have materials of their own: a solid layer at a random depth would hide most of its stack.
   Batch batches[6];
-  const Material materials[] = {unlitBlend(glm::vec3(1), 1.0f), glass(0.3f, true), glass(0.6f, false), light,
-                                glass(0.0f, false),             unlitBlend(glm::vec3(1), 1.0f)};
+  const Material materials[] = {
+      unlitBlend(glm::vec3(1), 1.0f), glass(0.3f, true), glass(0.6f, false), light, glass(0.0f, false),
+      unlitBlend(glm::vec3(1), 1.0f)};
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column) {
       const double x = column * kCellWidth, y = row * kCellHeight;

@@ -95,7 +95,7 @@ TEST(SpecularTextures, DoToFragmentsWhatFactorsDo) {
   // The row's fragments, from whichever band holds it.
   Fragment found[3][2];
   int seen = 0;
-  const auto keep = [&](Fragment (&pair)[2]) {
+  const auto keep = [&](Fragment(&pair)[2]) {
     return [&](const FragmentLists& lists) {
       if (kRow < lists.window.y0 || kRow >= lists.window.y1) return;
       for (int i = 0; i < 2; ++i) {

@@ -6,7 +6,9 @@
 namespace pellucid::test {
 namespace {
 
-double relative(double a, double b) { return std::abs(a - b) / std::max(std::abs(b), 1e-30); }
+double relative(double a, double b) {
+  return std::abs(a - b) / std::max(std::abs(b), 1e-30);
+}
 
 TEST(Fog, PhaseFunctionIntegratesToOneAndItsMeanCosineIsG) {
   for (const double g : {-0.95, -0.5, 0.0, 0.3, 0.7, 0.95}) {
@@ -14,7 +16,8 @@ TEST(Fog, PhaseFunctionIntegratesToOneAndItsMeanCosineIsG) {
     double whole = 0, mean = 0;
     for (int i = 0; i < kSteps; ++i) {
       const double cosine = -1.0 + (i + 0.5) * 2.0 / kSteps;
-      const double p = static_cast<double>(shading::henyeyGreenstein(static_cast<float>(cosine), static_cast<float>(g)));
+      const double p =
+          static_cast<double>(shading::henyeyGreenstein(static_cast<float>(cosine), static_cast<float>(g)));
       whole += p * 2.0 * M_PI * 2.0 / kSteps;
       mean += p * cosine * 2.0 * M_PI * 2.0 / kSteps;
       if (i % 1000 == 0) {
@@ -36,17 +39,20 @@ TEST(Fog, UniformFogUnderAmbientLightIsTheClosedForm) {
     for (const float wall : {0.5f, 5.0f, 40.0f})
       for (const int steps : {1, 2, 7, 64, 256})
         for (const int order : {shading::PLD_FOG_ORDERED, shading::PLD_FOG_SUMS})
-          for (const int weight : {shading::PLD_WEIGHT_EQ5, shading::PLD_WEIGHT_EQ7, shading::PLD_WEIGHT_EQ10Z, shading::PLD_WEIGHT_POWER}) {
+          for (const int weight : {shading::PLD_WEIGHT_EQ5, shading::PLD_WEIGHT_EQ7, shading::PLD_WEIGHT_EQ10Z,
+                                   shading::PLD_WEIGHT_POWER}) {
             FogStage stage(4, 3, wall);
             MediumSettings settings;
             settings.density = density;
             settings.albedo = {1.0, 0.9, 0.6};
             settings.steps = steps;
             settings.order = order;
-            const Picture picture = stage.picture(stage.sums(stage.fog(settings, ambient), {weight, 0.1f, 1000.0f, 3.0f}));
+            const Picture picture =
+                stage.picture(stage.sums(stage.fog(settings, ambient), {weight, 0.1f, 1000.0f, 3.0f}));
             for (int y = 0; y < 3; ++y)
               for (int x = 0; x < 4; ++x) {
-                const double metres = static_cast<double>(wall) / -stage.way(x, y).z, beta = std::exp(-density * metres);
+                const double metres = static_cast<double>(wall) / -stage.way(x, y).z,
+                             beta = std::exp(-density * metres);
                 for (int c = 0; c < 3; ++c) {
                   const double wanted = settings.albedo[c] * static_cast<double>(ambient[c]) * (1 - beta) +
                                         beta * static_cast<double>(stage.gbuffer.beauty[0][c]);
@@ -84,7 +90,8 @@ TEST(Fog, TransmittanceIsTheExponentialOfTheDepth) {
             }
             worst = std::max(worst, std::abs(static_cast<double>(ray.transmission) - std::exp(-depth)));
             if (depth > 1e-8 && depth < 50) {
-              EXPECT_LT(relative(static_cast<double>(ray.depth), depth), 3e-4) << density << ' ' << height << ' ' << base << ' ' << tilt;
+              EXPECT_LT(relative(static_cast<double>(ray.depth), depth), 3e-4)
+                  << density << ' ' << height << ' ' << base << ' ' << tilt;
             }
           }
   std::printf("largest error of transmittance %.2e\n", worst);

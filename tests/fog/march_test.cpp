@@ -1,8 +1,8 @@
 // Fog under lights: against an ordered march of the independent reference, CPU against GL, and among surfaces.
 #include <cmath>
 
-#include "composite/over.h"
 #include "composite/fold.h"
+#include "composite/over.h"
 #include "tests/fog/stage.h"
 
 namespace pellucid::test {
@@ -27,7 +27,8 @@ struct Shafts {
   }
   Fog fog(glm::ivec3 size) const {
     Fog made = stage.fog(settings, glm::vec3(0.05f));
-    made.visibility = volumeOf(stage.camera, box, size, [](int, glm::dvec3 p) { return glm::vec3(static_cast<float>(slit(p))); }, 1);
+    made.visibility = volumeOf(
+        stage.camera, box, size, [](int, glm::dvec3 p) { return glm::vec3(static_cast<float>(slit(p))); }, 1);
     return made;
   }
   reference::Marched truth(int x, int y, int steps) const {
@@ -66,7 +67,9 @@ Error shaftError(const Shafts& shafts, const Picture& picture) {
 // Must show: shafts against an ordered march.
 TEST(Fog, ShaftsAgainstAnOrderedMarch) {
   Shafts shafts;
-  std::printf("shafts in even fog, sun through a slit of 1.2 m; light volume, steps: mean and largest error (picture about .5)\n");
+  std::printf(
+      "shafts in even fog, sun through a slit of 1.2 m; light volume, steps: mean and largest error (picture about "
+      ".5)\n");
   double ordered64 = 0, sums64 = 0;
   for (const int edge : {48, 192})
     for (const int steps : {16, 32, 64, 128, 512})
@@ -74,8 +77,8 @@ TEST(Fog, ShaftsAgainstAnOrderedMarch) {
         shafts.settings.steps = steps;
         shafts.settings.order = order;
         const Error error = shaftError(shafts, shafts.stage.picture(shafts.stage.sums(shafts.fog({edge, 8, edge}))));
-        std::printf("  %3d texels %3d steps %-7s %.5f %.5f\n", edge, steps, order == shading::PLD_FOG_ORDERED ? "ordered" : "sums",
-                    error.mean, error.most);
+        std::printf("  %3d texels %3d steps %-7s %.5f %.5f\n", edge, steps,
+                    order == shading::PLD_FOG_ORDERED ? "ordered" : "sums", error.mean, error.most);
         if (edge == 192 && steps == 64) (order == shading::PLD_FOG_ORDERED ? ordered64 : sums64) = error.mean;
       }
   EXPECT_LT(ordered64, 0.004);  // of pictures of about .5: what 64 steps leave of the slit's edges
@@ -137,7 +140,8 @@ TEST(Fog, LampInLayeredFogAgainstTheReference) {
         return std::exp(-depth);
       };
       const glm::dvec3 way = stage.way(x, y);
-      const reference::Marched truth = reference::orderedMarch(air, {lamp}, {0, 1, 0}, {way.x, way.y, way.z}, 9.0 / -way.z, 3000);
+      const reference::Marched truth =
+          reference::orderedMarch(air, {lamp}, {0, 1, 0}, {way.x, way.y, way.z}, 9.0 / -way.z, 3000);
       for (std::size_t c = 0; c < 3; ++c) {
         const int k = static_cast<int>(c);
         const double wanted = truth.radiance[c] + truth.transmittance * static_cast<double>(stage.gbuffer.beauty[0][k]);
@@ -162,13 +166,16 @@ TEST(Fog, GlMarchesWhatTheCpuMarches) {
         if (gridded) {
           auto grid = std::make_shared<DensityGrid>();
           grid->density = Volume<float>({5, 6, 7}, 0.0f);
-          for (std::size_t i = 0; i < grid->density.texels.size(); ++i) grid->density.texels[i] = static_cast<float>(i % 11) * 0.1f;
+          for (std::size_t i = 0; i < grid->density.texels.size(); ++i)
+            grid->density.texels[i] = static_cast<float>(i % 11) * 0.1f;
           grid->boxFromWorld = glm::scale(glm::dmat4(1.0), glm::dvec3(0.2, 0.25, 0.1));
           grid->boxFromWorld[3] = glm::dvec4(0.5, 0.3, 0.9, 1.0);
           shafts.settings.grid = grid;
         }
         Fog fog = stage.fog(shafts.settings, glm::vec3(0.05f));
-        fog.visibility = volumeOf(stage.camera, shafts.box, {20, 6, 20}, [](int light, glm::dvec3 p) { return glm::vec3(light ? 1.0f : static_cast<float>(slit(p))); }, 2);
+        fog.visibility = volumeOf(
+            stage.camera, shafts.box, {20, 6, 20},
+            [](int light, glm::dvec3 p) { return glm::vec3(light ? 1.0f : static_cast<float>(slit(p))); }, 2);
         PassSettings settings;
         OitPlanes cpu = stage.accumulate(settings);
         cpu.info.weight = settings.weight;
@@ -181,7 +188,8 @@ TEST(Fog, GlMarchesWhatTheCpuMarches) {
           ++words;
           if (a == b) return;
           ++differ;
-          worst = std::max(worst, std::abs(static_cast<double>(a) - static_cast<double>(b)) / std::max(std::abs(static_cast<double>(b)), 1e-3));
+          worst = std::max(worst, std::abs(static_cast<double>(a) - static_cast<double>(b)) /
+                                      std::max(std::abs(static_cast<double>(b)), 1e-3));
         };
         for (std::size_t i = 0; i < cpu.radiance.size(); ++i) {
           fogged += cpu.weight[i].a > 0.0f;
@@ -248,7 +256,8 @@ TEST(Fog, RunsBetweenSurfacesCompositeExactly) {
         sun.place = {shafts.toSun.x, shafts.toSun.y, shafts.toSun.z};
         sun.intensity = {5.0, 5.0, 5.0};
         sun.visible = [](const reference::Vec& p) { return slit({p[0], p[1], p[2]}); };
-        const reference::Marched here = reference::orderedMarch(air, {sun}, {0, 1, 0}, {way.x, way.y, way.z}, metres, 8000);
+        const reference::Marched here =
+            reference::orderedMarch(air, {sun}, {0, 1, 0}, {way.x, way.y, way.z}, metres, 8000);
         light += passed * (here.radiance[0] - fogBefore) / fogPassed;
         passed *= here.transmittance / fogPassed;
         fogBefore = here.radiance[0];
@@ -265,7 +274,7 @@ TEST(Fog, RunsBetweenSurfacesCompositeExactly) {
       EXPECT_GT(before, 0.0);
     }
   std::printf("fog among three panes: `over` %.5f, sums %.5f from the ordered march\n", worst, worstSums);
-  EXPECT_LT(worst, 0.01);      // the light volume's texels at the slit's edges, as without panes
+  EXPECT_LT(worst, 0.01);  // the light volume's texels at the slit's edges, as without panes
   EXPECT_GT(worstSums, worst);
   for (std::size_t i = 0; i + 1 < both.offsets.size(); ++i) EXPECT_LE(both.offsets[i + 1] - both.offsets[i], 7u);
 }
@@ -297,8 +306,8 @@ TEST(Fog, RunsDependOnNoOrder) {
   for (std::size_t i = 0; i < a.light.size(); ++i) EXPECT_EQ(a.light[i], b.light[i]);
 }
 
-// Within one ray the order is free for the sums of PT17: backwards gives the same to rounding. The ordered form is exact
-// instead, which is why it is the default.
+// Within one ray the order is free for the sums of PT17: backwards gives the same to rounding. The ordered form is
+// exact instead, which is why it is the default.
 TEST(Fog, TheSumsOfARayAreFreeOfOrder) {
   shading::FogSums forward = shading::noFog(), backward = shading::noFog();
   const shading::WeightSettings weight{shading::PLD_WEIGHT_EQ7Z, 0.1f, 100.0f, 3.0f};
@@ -309,7 +318,8 @@ TEST(Fog, TheSumsOfARayAreFreeOfOrder) {
   };
   for (int i = 0; i < kSteps; ++i) forward = add(forward, i);
   for (int i = kSteps; i-- > 0;) backward = add(backward, i);
-  const shading::OitSums a = shading::fogOitSums(forward, shading::PLD_FOG_SUMS), b = shading::fogOitSums(backward, shading::PLD_FOG_SUMS);
+  const shading::OitSums a = shading::fogOitSums(forward, shading::PLD_FOG_SUMS),
+                         b = shading::fogOitSums(backward, shading::PLD_FOG_SUMS);
   EXPECT_NEAR(a.numerator.r / b.numerator.r, 1.0f, 1e-6f);
   EXPECT_NEAR(a.denominator.r / b.denominator.r, 1.0f, 1e-6f);
   EXPECT_NEAR(a.depth.r / b.depth.r, 1.0f, 1e-6f);

@@ -76,8 +76,8 @@ TEST_F(FogProgram, OverIsTheClosedForm) {
 }
 
 TEST_F(FogProgram, EveryMethodAndTierTakesIt) {
-  for (const char* method : {"phenomenological", "weighted", "blended", "average", "sum", "over", "unsorted", "front+tail", "wavelet:2",
-                             "moments:4", "mlab:4", "stochastic"}) {
+  for (const char* method : {"phenomenological", "weighted", "blended", "average", "sum", "over", "unsorted",
+                             "front+tail", "wavelet:2", "moments:4", "mlab:4", "stochastic"}) {
     const Ended ended = run({"--fog", "density=0.2", "--method", method});
     ASSERT_EQ(ended.code, 0) << method << ended.err;
     const glm::vec4 out = picture().at(2, 2);  // beside the pane: fog alone
@@ -119,7 +119,8 @@ TEST_F(FogProgram, FragmentsFlattenToOver) {
 TEST_F(FogProgram, JsonIsTheSameAsTheList) {
   ASSERT_EQ(run({"--fog", "density=0.2,albedo=0.9:0.8:0.7,box=-1:-1:-5:1:1:-1,g=-0.3"}).code, 0);
   const Image<glm::vec4> list = picture();
-  std::ofstream(folder + "/fog.json") << R"({"density": 0.2, "albedo": [0.9, 0.8, 0.7], "box": [-1, -1, -5, 1, 1, -1], "g": -0.3})";
+  std::ofstream(folder + "/fog.json")
+      << R"({"density": 0.2, "albedo": [0.9, 0.8, 0.7], "box": [-1, -1, -5, 1, 1, -1], "g": -0.3})";
   ASSERT_EQ(run({"--fog", "fog.json"}).code, 0);
   const Image<glm::vec4> json = picture();
   for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(list[i], json[i]);
@@ -130,7 +131,8 @@ TEST_F(FogProgram, WrongFogIsRefused) {
     const Ended ended = run(extra);
     EXPECT_EQ(ended.code, code) << extra.back() << ended.err;
     EXPECT_NE(ended.err.find(says), std::string::npos) << ended.err;
-    EXPECT_EQ(filesIn(folder), (std::vector<std::string>{"bad.json", "list.json", "pane.glb", "shot.exr"})) << extra.back();
+    EXPECT_EQ(filesIn(folder), (std::vector<std::string>{"bad.json", "list.json", "pane.glb", "shot.exr"}))
+        << extra.back();
   };
   std::ofstream(folder + "/bad.json") << "{\"density\": ";
   std::ofstream(folder + "/list.json") << "{\"density\": -1}";
@@ -183,7 +185,8 @@ TEST_F(FogProgram, OddGridsAreRefusedOrRepaired) {
   EXPECT_EQ(code("huge.vdb", "voxels"), 6);
   EXPECT_EQ(code("huge.vdb:heat", "heat"), 4);
   writeVdb("bent.vdb", [](openvdb::FloatGrid& grid) {
-    grid.setTransform(openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {9, 9, 9}), 0.5, 1.0, 1.0));
+    grid.setTransform(
+        openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {9, 9, 9}), 0.5, 1.0, 1.0));
   });
   EXPECT_EQ(code("bent.vdb", "transform"), 4);
   writeVdb("odd.vdb", [](openvdb::FloatGrid& grid) {
@@ -192,14 +195,16 @@ TEST_F(FogProgram, OddGridsAreRefusedOrRepaired) {
     grid.tree().setValue({1, 1, -40}, INFINITY);
   });
   EXPECT_EQ(code("odd.vdb", "not finite"), 0);
-  for (const Image<glm::vec4> out = picture(); const glm::vec4& pixel : std::vector<glm::vec4>(out.data(), out.data() + out.size()))
+  for (const Image<glm::vec4> out = picture();
+       const glm::vec4& pixel : std::vector<glm::vec4>(out.data(), out.data() + out.size()))
     ASSERT_TRUE(std::isfinite(pixel.r + pixel.g + pixel.b));
 }
 
 // Cut short anywhere, or with bytes changed: never more than an error of one sentence.
 TEST_F(FogProgram, DamagedGridsEndInAnError) {
 #if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "OpenVDB's own reader leaks when it throws, and asks for sizes of damaged files that the sanitizer refuses";
+  GTEST_SKIP()
+      << "OpenVDB's own reader leaks when it throws, and asks for sizes of damaged files that the sanitizer refuses";
 #else
   writeVdb("ball.vdb");
   const std::string whole = slurp(folder + "/ball.vdb");
@@ -207,10 +212,12 @@ TEST_F(FogProgram, DamagedGridsEndInAnError) {
   for (int i = 0; i < 12; ++i) {
     std::string broken = whole.substr(0, i < 8 ? whole.size() * static_cast<std::size_t>(i) / 8 : whole.size());
     if (i >= 8)
-      for (int k = 0; k < 3; ++k) broken[random.below(static_cast<std::uint32_t>(std::min<std::size_t>(whole.size(), 600)))] ^= 0x5a;
+      for (int k = 0; k < 3; ++k)
+        broken[random.below(static_cast<std::uint32_t>(std::min<std::size_t>(whole.size(), 600)))] ^= 0x5a;
     std::ofstream(folder + "/broken.vdb", std::ios::binary) << broken;
     const Ended ended = run({"--fog-grid", "broken.vdb"});
-    EXPECT_TRUE(ended.code == 0 || ended.code == 3 || ended.code == 4 || ended.code == 6) << i << ": " << ended.code << ended.err;
+    EXPECT_TRUE(ended.code == 0 || ended.code == 3 || ended.code == 4 || ended.code == 6)
+        << i << ": " << ended.code << ended.err;
     if (i < 8) {
       EXPECT_EQ(ended.code, 3) << i << ended.err;
     }

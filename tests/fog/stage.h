@@ -45,7 +45,8 @@ struct FogStage : Stage {
     return glm::normalize(glm::dvec3(glm::dvec2(rays.offset + rays.scale * glm::vec2(x, y)), -1.0));
   }
 
-  OitPlanes sums(const Fog& fog, const shading::WeightSettings& weight = {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f}) const {
+  OitPlanes sums(const Fog& fog,
+                 const shading::WeightSettings& weight = {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f}) const {
     OitPlanes planes = emptyPlanes(gbuffer.display, gbuffer.data);
     planes.info.weight = weight;
     addFog(fog, gbuffer, {0.5, 0.5}, planes);
@@ -56,7 +57,8 @@ struct FogStage : Stage {
 
 // A light volume over a box of the world from a function of world points.
 inline std::shared_ptr<const LightVolume> volumeOf(const Camera& camera, const Box& box, glm::ivec3 size,
-                                                   const std::function<glm::vec3(int, glm::dvec3)>& visible, int lights) {
+                                                   const std::function<glm::vec3(int, glm::dvec3)>& visible,
+                                                   int lights) {
   auto volume = std::make_shared<LightVolume>();
   volume->size = size;
   volume->visibility = Volume<glm::vec4>({size.x, size.y, size.z * lights}, glm::vec4(1.0f));

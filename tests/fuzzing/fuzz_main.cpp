@@ -1,6 +1,6 @@
-// fuzz_files [COUNT [SEED]]: COUNT damaged copies of the files that the program reads, each given to the verb that reads
-// it. A finding is a crash, a run without end, an exit code or a memory peak that the contract does not have, a failure
-// without a sentence, or one that leaves output behind. Findings are kept; ends with 1 when there are some.
+// fuzz_files [COUNT [SEED]]: COUNT damaged copies of the files that the program reads, each given to the verb that
+// reads it. A finding is a crash, a run without end, an exit code or a memory peak that the contract does not have, a
+// failure without a sentence, or one that leaves output behind. Findings are kept; ends with 1 when there are some.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{3} << 30;  // GL, Embree and their libraries take .3 of them
 
-constexpr double kMostCpu = 10;                             // s; whole files take less than 1
-constexpr rlim_t kEndCpu = 60;                              // s, when a run without end is ended; ours is far below it
+constexpr double kMostCpu = 10;  // s; whole files take less than 1
+constexpr rlim_t kEndCpu = 60;   // s, when a run without end is ended; ours is far below it
 
 // A file, and the command that reads its damaged copy: "@" stands for it.
 struct Subject {
@@ -46,17 +46,20 @@ std::string damaged(const std::string& whole, Random& random) {
       case 2:
       case 3:
       case 4: {  // a number at its limits
-        constexpr std::uint32_t limits[] = {0u, 1u, 0x7fffffffu, 0x80000000u, 0xffffffffu, 0x7f800000u, 0x7fc00000u, 65536u};
+        constexpr std::uint32_t limits[] = {0u,          1u,          0x7fffffffu, 0x80000000u,
+                                            0xffffffffu, 0x7f800000u, 0x7fc00000u, 65536u};
         const std::uint32_t value = limits[random.below(8)];
         const std::size_t at = place(bytes.size());
-        for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k) bytes[at + k] = static_cast<char>(value >> (8 * k));
+        for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k)
+          bytes[at + k] = static_cast<char>(value >> (8 * k));
         break;
       }
       case 5:  // the end is missing
         bytes.resize(bytes.size() - std::min(bytes.size() - 1, place(bytes.size())));
         break;
       case 6: {  // a piece of it twice
-        const std::size_t from = place(bytes.size()), length = std::min<std::size_t>(1 + random.below(64), bytes.size() - from);
+        const std::size_t from = place(bytes.size()),
+                          length = std::min<std::size_t>(1 + random.below(64), bytes.size() - from);
         bytes.insert(place(bytes.size()), bytes.substr(from, length));
         break;
       }
@@ -82,7 +85,8 @@ void require(const std::vector<std::string>& arguments, const std::string& progr
 
 std::vector<Subject> makeSubjects(const std::string& folder) {
   for (const char* sample : {"bottles", "foliage"}) require({folder, sample, "72"}, "pellucid_samples");
-  const std::string picture = folder + "/bottles.exr", glass = folder + "/bottles.glb", leaves = folder + "/foliage.glb";
+  const std::string picture = folder + "/bottles.exr", glass = folder + "/bottles.glb",
+                    leaves = folder + "/foliage.glb";
   require({"accumulate", picture, glass, "-o", folder + "/planes.exr"});
   require({"fragments", picture, glass, "-o", folder + "/deep.exr"});
   require({"fragments", folder + "/foliage.exr", leaves, "-o", folder + "/deep2.exr"});
@@ -123,7 +127,8 @@ std::uint64_t numberOf(const char* text, const char* name) {
 int run(int count, char** arguments) {
   const std::uint64_t wanted = count > 1 ? numberOf(arguments[1], "COUNT") : 1000;
   const std::uint64_t seed = count > 2 ? numberOf(arguments[2], "SEED") : 1;
-  const std::string folder = freshFolder("fuzz"), findings = freshFolder("fuzz-findings"), work = freshFolder("fuzz-work");
+  const std::string folder = freshFolder("fuzz"), findings = freshFolder("fuzz-findings"),
+                    work = freshFolder("fuzz-work");
   const rlimit cpu{kEndCpu, kEndCpu};
   setrlimit(RLIMIT_CPU, &cpu);
   const std::vector<Subject> subjects = makeSubjects(folder);

@@ -19,7 +19,7 @@ Stage panes() {
   glass.baseColor = {.9f, .6f, .3f, .4f};
   const int tinted = stage.add(glass);
   for (int i = 0; i < 4; ++i) stage.slanted(0, 0, kEdge, kEdge, 2.0 + i, 6.0 - i, tinted);  // they cross
-  stage.quad(100, 70, 300, 400, 3.3, stage.add(unlitBlend({.1f, .1f, .1f}, 1.0f)));        // solid
+  stage.quad(100, 70, 300, 400, 3.3, stage.add(unlitBlend({.1f, .1f, .1f}, 1.0f)));         // solid
   return stage;
 }
 
@@ -47,9 +47,8 @@ struct Pixels {
           std::memcpy(static_cast<void*>(&lean), &lists.fragments[k], sizeof lean);
           pixels[pixel].push_back(lean);
         }
-        std::sort(pixels[pixel].begin(), pixels[pixel].end(), [](const LeanFragment& a, const LeanFragment& b) {
-          return std::memcmp(&a, &b, sizeof a) < 0;
-        });
+        std::sort(pixels[pixel].begin(), pixels[pixel].end(),
+                  [](const LeanFragment& a, const LeanFragment& b) { return std::memcmp(&a, &b, sizeof a) < 0; });
       }
   }
 };
@@ -107,7 +106,8 @@ TEST(LeanLists, DeepPixelsAmongShallowOnes) {
   Primitive all;  // one draw
   all.material = smoke;
   for (const Primitive& quad : column.scene.primitives) {
-    for (const std::uint32_t index : quad.indices) all.indices.push_back(static_cast<std::uint32_t>(all.vertices.size()) + index);
+    for (const std::uint32_t index : quad.indices)
+      all.indices.push_back(static_cast<std::uint32_t>(all.vertices.size()) + index);
     all.vertices.insert(all.vertices.end(), quad.vertices.begin(), quad.vertices.end());
   }
   stage.place(std::move(all));

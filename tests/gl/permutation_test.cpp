@@ -58,7 +58,8 @@ TEST(Permutations, EverySurfaceCompilesAndLinks) {
   for (const Defines& surface : all) {
     frame.solids = turn / gl::kOutputs % 2 == 1;
     frame.grey = turn / (2 * gl::kOutputs) % 2 == 1;
-    build(gl::outputDefines(static_cast<gl::Output>(turn % gl::kOutputs), frame, shading::PLD_WEIGHT_EQ5, turn / 8 % 2 ? 0 : 1),
+    build(gl::outputDefines(static_cast<gl::Output>(turn % gl::kOutputs), frame, shading::PLD_WEIGHT_EQ5,
+                            turn / 8 % 2 ? 0 : 1),
           surface);
     ++turn;
   }

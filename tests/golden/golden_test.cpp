@@ -1,5 +1,5 @@
-// Every sample, composited as its README says, against the picture kept of it. `./dev golden` renews what is kept: look at
-// what has changed before it is committed.
+// Every sample, composited as its README says, against the picture kept of it. `./dev golden` renews what is kept: look
+// at what has changed before it is committed.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,9 @@ struct Shot {
   std::vector<std::string> flags;
 };
 
-void PrintTo(const Shot& shot, std::ostream* out) { *out << shot.name; }
+void PrintTo(const Shot& shot, std::ostream* out) {
+  *out << shot.name;
+}
 
 const std::vector<Shot> kShots = {
     {"ball", "ball", {}},
@@ -42,7 +44,9 @@ const std::vector<Shot> kShots = {
     {"hair", "hair", {}},
     {"mixed", "mixed", {"--low-res", "2"}},
     {"shadows", "shadows", {"--shadows", "exact"}},
-    {"shafts", "shafts", {"--fog", "density=.12,g=.5,albedo=.95,shafts=160,steps=128", "--environment", ".05,.055,.065"}},
+    {"shafts",
+     "shafts",
+     {"--fog", "density=.12,g=.5,albedo=.95,shafts=160,steps=128", "--environment", ".05,.055,.065"}},
     {"smoke", "smoke", {}},
     {"smokeball", "smokeball", {"--particle-light", "32", "--shadows", "exact"}},
     {"sparks", "sparks", {"--shadows", "exact"}},
@@ -56,17 +60,20 @@ bool renews() {
   return wish && std::string(wish) == "renew";
 }
 
-std::string keptName(const Shot& shot) { return kKept + shot.name + ".exr"; }
+std::string keptName(const Shot& shot) {
+  return kKept + shot.name + ".exr";
+}
 
 class Golden : public ::testing::TestWithParam<Shot> {};
 
-// The same machine gives the same bits. Another driver, or a processor with other instructions, rounds otherwise (kept are
-// halves, 2^-11 of a value) and puts samples on the other side of edges: of 5184 pixels that is some.
+// The same machine gives the same bits. Another driver, or a processor with other instructions, rounds otherwise (kept
+// are halves, 2^-11 of a value) and puts samples on the other side of edges: of 5184 pixels that is some.
 constexpr double kDark = 0.05, kMostMean = 1e-3, kFar = 0.02, kMostFar = 0.01;
 
 TEST_P(Golden, IsAsItWas) {
   const Shot& shot = GetParam();
-  const std::string folder = freshFolder(std::string("golden-") + shot.name), stem = std::string(folder) + "/" + shot.sample;
+  const std::string folder = freshFolder(std::string("golden-") + shot.name),
+                    stem = std::string(folder) + "/" + shot.sample;
   RunOptions samples;
   samples.program = "pellucid_samples";
   const Ended made = runProgram({folder, shot.sample, kRows}, samples);
@@ -107,15 +114,16 @@ TEST_P(Golden, IsAsItWas) {
     largest = std::max(largest, off);
     far += off > kFar;
   }
-  std::printf("%s: off what is kept by %.2g on average, %.2g at most; %d of %d pixels by more than %.2g\n", shot.name, sum / pixels, largest,
-              far, pixels, kFar);
+  std::printf("%s: off what is kept by %.2g on average, %.2g at most; %d of %d pixels by more than %.2g\n", shot.name,
+              sum / pixels, largest, far, pixels, kFar);
   EXPECT_LE(sum / pixels, kMostMean);
   EXPECT_LE(far, kMostFar * pixels);
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, Golden, ::testing::ValuesIn(kShots), [](const auto& instance) {
   std::string name = instance.param.name;
-  std::replace_if(name.begin(), name.end(), [](char c) { return c == '-' || c == '+'; }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '-' || c == '+'; }, '_');
   return name;
 });
 

@@ -112,10 +112,21 @@ TEST(Planted, TwoTypesOfOneNameAreFound) {
   };
   const char* card = "namespace pellucid::samples {\nstruct Card {\n};\n}  // namespace pellucid::samples\n";
   EXPECT_EQ(twice(card, card), 1u);
-  EXPECT_EQ(twice(card, "namespace pellucid::samples {\nclass Card final : public Paper {\n};\n}  // namespace pellucid::samples\n"), 1u);
+  EXPECT_EQ(
+      twice(
+          card,
+          "namespace pellucid::samples {\nclass Card final : public Paper {\n};\n}  // namespace pellucid::samples\n"),
+      1u);
   EXPECT_EQ(twice(card, "namespace pellucid::test {\nstruct Card {\n};\n}  // namespace pellucid::test\n"), 0u);
-  EXPECT_EQ(twice(card, "namespace pellucid::samples {\nnamespace {\nstruct Card {\n};\n}  // namespace\n}  // namespace pellucid::samples\n"), 0u);
-  EXPECT_EQ(twice(card, "namespace pellucid::samples {\nstruct Card;\nstruct Card::Edge {\n};\n}  // namespace pellucid::samples\n"), 0u);
+  EXPECT_EQ(twice(card,
+                  "namespace pellucid::samples {\nnamespace {\nstruct Card {\n};\n}  // namespace\n}  // namespace "
+                  "pellucid::samples\n"),
+            0u);
+  EXPECT_EQ(
+      twice(
+          card,
+          "namespace pellucid::samples {\nstruct Card;\nstruct Card::Edge {\n};\n}  // namespace pellucid::samples\n"),
+      0u);
 }
 
 TEST(Planted, AMissingOrEmptyReadmeIsFound) {

@@ -140,7 +140,8 @@ Violations againstSharedText(const SourceFile& file) {
       continue;
     }
     for (const Pattern& pattern : sharedPatterns())
-      if (std::smatch match; std::regex_search(code[i], match, pattern.found) && !(pattern.what == kInDoubles && file.path == kExactSums))
+      if (std::smatch match;
+          std::regex_search(code[i], match, pattern.found) && !(pattern.what == kInDoubles && file.path == kExactSums))
         found.push_back(at(file, number) + "'" + match.str() + "': " + pattern.what);
   }
   return found;

@@ -19,7 +19,8 @@ Violations againstArrows(const SourceFile& file);
 Violations libraryOutsideItsRoom(const SourceFile& file);
 // What shaders/shared/ must not hold, or one of its two compilers reads it differently.
 Violations againstSharedText(const SourceFile& file);
-// Types of headers that share a name and a namespace: a program that links both uses the wrong one, and no compiler says so.
+// Types of headers that share a name and a namespace: a program that links both uses the wrong one, and no compiler
+// says so.
 Violations definedTwice(const std::vector<SourceFile>& files);
 // Rooms of the tree below `top` that have no README.md.
 Violations roomsWithoutReadme(const std::string& top);

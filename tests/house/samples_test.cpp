@@ -171,9 +171,9 @@ TEST_F(Samples, HairWithinItsBudget) {
   double alone = 0;
   for (const char* hairs : {"1", "417", "2084"}) {
     ASSERT_EQ(runProgram({".", "hair", "90", "--hairs", hairs}, generator).code, 0);
-    const Ended ended = runProgram({"composite", "hair.exr", "hair.glb", "-o", "out.exr", "--aa", "1", "--budget", "8M",
-                                    "--stats", "--json"},
-                                   options);
+    const Ended ended = runProgram(
+        {"composite", "hair.exr", "hair.glb", "-o", "out.exr", "--aa", "1", "--budget", "8M", "--stats", "--json"},
+        options);
     ASSERT_EQ(ended.code, 0) << ended.err;
     const nlohmann::json statistics = nlohmann::json::parse(ended.out)["statistics"];
     EXPECT_EQ(statistics["triangles"].get<int>(), 480 * std::stoi(hairs));

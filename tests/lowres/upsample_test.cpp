@@ -94,8 +94,8 @@ Deviation outsideRange(const Image<glm::vec4>& found, const Image<glm::vec4>& fu
             high = glm::max(high, full.at(i, j));
           }
       for (int c = 0; c < 3; ++c) {
-        const double outside = static_cast<double>(
-            std::max({0.0f, low[c] - found.at(x, y)[c], found.at(x, y)[c] - high[c]}));
+        const double outside =
+            static_cast<double>(std::max({0.0f, low[c] - found.at(x, y)[c], found.at(x, y)[c] - high[c]}));
         sum += std::abs(static_cast<double>(found.at(x, y)[c] - full.at(x, y)[c]));
         if (outside > deviation.worst) deviation.worst = outside, deviation.x = x, deviation.y = y;
       }
@@ -111,8 +111,9 @@ TEST(LowResolution, EdgesBetweenOpaqueThingsAndSmokeAreClean) {
   for (const int factor : {2, 4, 8}) {
     const int reach = static_cast<int>(std::ceil((shading::PLD_UPSAMPLE_TENT + 0.5f) * static_cast<float>(factor)));
     const Deviation deviation = outsideRange(stage.pictureOf(stage.mixed(factor)), full, stage.gbuffer, reach);
-    std::printf("low resolution %dx%d: at most %.4f outside the range of the neighbours, at (%d, %d); mean error %.4f\n",
-                factor, factor, deviation.worst, deviation.x, deviation.y, deviation.mean);
+    std::printf(
+        "low resolution %dx%d: at most %.4f outside the range of the neighbours, at (%d, %d); mean error %.4f\n",
+        factor, factor, deviation.worst, deviation.x, deviation.y, deviation.mean);
     EXPECT_LE(deviation.worst, factor == 2 ? 0.01 : factor == 4 ? 0.025 : 0.1);
   }
 }
@@ -138,8 +139,9 @@ OitPlanes fromRawSums(const MixedStage& stage, const OitPlanes& empty) {
       const auto texels = [&](auto&& each) {
         for (int j = std::max(cy - 3, 0); j <= std::min(cy + 3, stage.low.data.height() - 1); ++j)
           for (int i = std::max(cx - 3, 0); i <= std::min(cx + 3, stage.low.data.width() - 1); ++i)
-            each(i, j, shading::upsampleShare(glm::vec2(i, j) - place, stage.view.opaqueZ.at(x, y),
-                                              stage.view.gbuffer.viewZ.at(i, j)));
+            each(i, j,
+                 shading::upsampleShare(glm::vec2(i, j) - place, stage.view.opaqueZ.at(x, y),
+                                        stage.view.gbuffer.viewZ.at(i, j)));
       };
       texels([&](int, int, float share) { shares += share; });
       texels([&](int i, int j, float share) {
@@ -211,7 +213,8 @@ TEST(LowResolution, SmokeStaysInItsPlaceInAnyWindow) {
   std::vector<glm::vec4> texels;
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
-      texels.push_back(glm::vec4(1, 1, 1, std::exp(-0.01f * static_cast<float>((x - 40) * (x - 40) + (y - 30) * (y - 30)))));
+      texels.push_back(
+          glm::vec4(1, 1, 1, std::exp(-0.01f * static_cast<float>((x - 40) * (x - 40) + (y - 30) * (y - 30)))));
   Material light = unlitBlend(glm::vec3(1), 0.9f);
   light.baseColorTexture.texture = stage.texture(64, 64, texels);
   stage.quad(10, 30, 78, 98, 5.0, stage.addLow(light));

@@ -40,7 +40,8 @@ struct Foliage {
     const ExrPart& part = document.parts[0];
     std::vector<float> values;
     for (const char* channel : {"R", "G", "B"})
-      for (std::size_t i = 0; i < static_cast<std::size_t>(part.data.width()) * static_cast<std::size_t>(part.data.height()); ++i)
+      for (std::size_t i = 0;
+           i < static_cast<std::size_t>(part.data.width()) * static_cast<std::size_t>(part.data.height()); ++i)
         values.push_back(part.find(channel)->at(i));
     return values;
   }
@@ -81,10 +82,11 @@ TEST(RimsApart, ResolveDarkensThemAsThePassDoes) {
       }
       alone += planes.weight[i].a == 1.0f ? 1 : 0;
     }
-    std::printf("[ figure ] direct %s: %zu pixels of rims, %zu of one layer: resolve against the pass at most %.2g there, "
-                "%.3f among all; mean %.5f of %.5f\n",
-                direct.c_str(), pixels, alone, worstAlone, worst, sum / static_cast<double>(3 * pixels),
-                darkened / static_cast<double>(3 * pixels));
+    std::printf(
+        "[ figure ] direct %s: %zu pixels of rims, %zu of one layer: resolve against the pass at most %.2g there, "
+        "%.3f among all; mean %.5f of %.5f\n",
+        direct.c_str(), pixels, alone, worstAlone, worst, sum / static_cast<double>(3 * pixels),
+        darkened / static_cast<double>(3 * pixels));
     EXPECT_GT(alone, 100u);
     EXPECT_LE(worstAlone, 0x1p-12) << "half a unit of the half floats that the picture is written in, of each";
     EXPECT_LT(sum, 0.1 * darkened) << "several rims in a pixel share one answer";

@@ -1,7 +1,7 @@
 // Solid insides and rims together against 64 rays per pixel: as much is covered, and no seam lies between the two. A
-// single pixel of one sample is off by several times the mean: its edge is where the mip level puts it, by up to a texel
-// of that level. The exact area of a half plane in place of the linear ramp does not help (.070 instead of .067). More
-// samples read finer levels; at 64 of them what is left is the noise of the rays (.015).
+// single pixel of one sample is off by several times the mean: its edge is where the mip level puts it, by up to a
+// texel of that level. The exact area of a half plane in place of the linear ramp does not help (.070 instead of .067).
+// More samples read finer levels; at 64 of them what is left is the noise of the rays (.015).
 #include <gtest/gtest.h>
 
 #include "composite/antialias.h"
@@ -42,9 +42,10 @@ void holdCoverage(PlantScene scene, const std::vector<samples::Card>& cards, con
       bias += static_cast<double>(drawn - rays[i]);
     }
     const auto count = static_cast<double>(rims);
-    printf("[ figure ] %s, %d lines, %d samples: %zu rim pixels cover %+.4f too much on average, single ones are off by "
-           "%.4f; seams %zu\n",
-           name, lines, samples, rims, bias / count, sum / count, seams);
+    printf(
+        "[ figure ] %s, %d lines, %d samples: %zu rim pixels cover %+.4f too much on average, single ones are off by "
+        "%.4f; seams %zu\n",
+        name, lines, samples, rims, bias / count, sum / count, seams);
     ASSERT_GT(rims, 200u);
     EXPECT_EQ(seams, 0u);
     EXPECT_LE(std::abs(bias / count), 0.02);

@@ -149,8 +149,8 @@ double LeafWorld::open(glm::dvec3 point, glm::dvec3 normal, double reach, int ra
 Image<float> LeafWorld::coverage(const LeafView& view, int edge) const {
   const Window data = view.data.width() > 0 ? view.data : Window{0, 0, view.width, view.height};
   const double tall = std::tan(0.5 * view.yfov), wide = tall * view.width / view.height;
-  const glm::dmat3 worldFromView = glm::transpose(
-      glm::dmat3(glm::lookAt(view.eye * impl_->scale, view.target * impl_->scale, glm::dvec3(0, 1, 0))));
+  const glm::dmat3 worldFromView =
+      glm::transpose(glm::dmat3(glm::lookAt(view.eye * impl_->scale, view.target * impl_->scale, glm::dvec3(0, 1, 0))));
   const glm::vec3 eye(view.eye * impl_->scale);
   Image<float> covered(data.width(), data.height(), 0.0f);
   tbb::parallel_for(0, data.height(), [&](int y) {

@@ -42,7 +42,8 @@ class LeafWorld {
 
   LeafPicture picture(const LeafView& view) const;
 
-  // Part of each pixel of the view's window that cards cover, by edge x edge stratified rays against the finest masks. [0,1]
+  // Part of each pixel of the view's window that cards cover, by edge x edge stratified rays against the finest masks.
+  // [0,1]
   Image<float> coverage(const LeafView& view, int edge) const;
 
   // Cosine-weighted part of the hemisphere that is open within `reach` metres, by `rays` stratified rays (a square

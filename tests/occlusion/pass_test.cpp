@@ -64,8 +64,8 @@ void putLeavesIntoGBuffer(LeafStage& stage, const Image<float>& solidZ) {
   for (int y = 0; y < solidZ.height(); ++y)
     for (int x = 0; x < solidZ.width(); ++x) {
       stage.gbuffer.viewZ.at(x, y) = std::isfinite(solidZ.at(x, y)) ? solidZ.at(x, y) : 6.0f;
-      stage.gbuffer.occlusion.at(x, y) = 0.5f + 0.4f * std::sin(0.21f * static_cast<float>(x)) *
-                                                    std::cos(0.17f * static_cast<float>(y));
+      stage.gbuffer.occlusion.at(x, y) =
+          0.5f + 0.4f * std::sin(0.21f * static_cast<float>(x)) * std::cos(0.17f * static_cast<float>(y));
     }
 }
 
@@ -180,8 +180,7 @@ TEST(OcclusionPass, LeavesThatTheGBufferLacksAreOccludedByTheirOwnDepth) {
   const OitPlanes ambient = unlit.accumulate(settings);
   for (std::size_t i = 0; i < before.solid.size(); ++i) {
     if (!std::isfinite(before.solid[i].a)) continue;
-    for (int c = 0; c < 3; ++c)
-      ASSERT_NEAR(after.solid[i][c], before.solid[i][c] - 0.75f * ambient.solid[i][c], 1e-5f);
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(after.solid[i][c], before.solid[i][c] - 0.75f * ambient.solid[i][c], 1e-5f);
   }
 }
 
@@ -190,7 +189,8 @@ TEST(OcclusionPass, JitteredSamplesKeepTheOcclusionOfTheirLeaf) {
   Leaves leaves = leavesWithOcclusion();
   leaves.stage.scene.lights.clear();
   auto planes = std::make_shared<OccluderPlanes>(*leaves.settings.occlusion.occluders);
-  for (std::size_t i = 0; i < planes->occlusion.size(); ++i) planes->occlusion[i] = planes->viewZ[i] < 5.0f ? 0.25f : 1.0f;
+  for (std::size_t i = 0; i < planes->occlusion.size(); ++i)
+    planes->occlusion[i] = planes->viewZ[i] < 5.0f ? 0.25f : 1.0f;
   PassSettings open = leaves.settings;
   open.occlusion.occluders = nullptr;
   leaves.settings.occlusion.occluders = planes;
@@ -224,9 +224,9 @@ TEST(OcclusionPass, GlInfersWhatTheTruthTestsMeasure) {
     pass.fragments(how, [&](const FragmentLists& lists) {
       for (int y = lists.window.y0; y < lists.window.y1; ++y)
         for (int x = lists.window.x0; x < lists.window.x1; ++x) {
-          const auto pixel = static_cast<std::size_t>(y - lists.window.y0) *
-                                 static_cast<std::size_t>(lists.window.width()) +
-                             static_cast<std::size_t>(x - lists.window.x0);
+          const auto pixel =
+              static_cast<std::size_t>(y - lists.window.y0) * static_cast<std::size_t>(lists.window.width()) +
+              static_cast<std::size_t>(x - lists.window.x0);
           glm::vec3& here = front.at(x - picture.data.x0, y - picture.data.y0);
           for (std::uint64_t k = lists.offsets[pixel]; k < lists.offsets[pixel + 1]; ++k) {
             const Fragment& fragment = lists.fragments[k];
@@ -253,7 +253,8 @@ TEST(OcclusionPass, GlInfersWhatTheTruthTestsMeasure) {
       ++count;
     }
   const double mean = sum / static_cast<double>(count), occluded = none / static_cast<double>(count);
-  printf("[ figure ] %zu rims: GL and the model of it differ by mean %.4f (mean occlusion %.3f)\n", count, mean, occluded);
+  printf("[ figure ] %zu rims: GL and the model of it differ by mean %.4f (mean occlusion %.3f)\n", count, mean,
+         occluded);
   ASSERT_GT(count, 2000u);
   ASSERT_GT(occluded, 0.2);
   // Their texture filters differ: where the gradient is small it turns, and with it the line of taps.

@@ -1,5 +1,5 @@
-// The pictures of PT17 fig. 6 through the transparent pass, against occlusion traced at every fragment's own point. They
-// are left in the build folder, occlusion_*.exr, to be looked at.
+// The pictures of PT17 fig. 6 through the transparent pass, against occlusion traced at every fragment's own point.
+// They are left in the build folder, occlusion_*.exr, to be looked at.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -122,12 +122,13 @@ class Scene6 {
       for (int column = lists.window.x0; column < lists.window.x1; ++column) {
         const int u = column - lists.window.x0, v = row - lists.window.y0, x = column - picture_.data.x0,
                   y = row - picture_.data.y0;
-        const auto pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(lists.window.width()) +
-                           static_cast<std::size_t>(u);
+        const auto pixel =
+            static_cast<std::size_t>(v) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(u);
         for (std::uint64_t k = lists.offsets[pixel]; k < lists.offsets[pixel + 1]; ++k)
           lists.fragments[k].radiance *= static_cast<float>(openAt(x, y, lists.fragments[k].z));
         glm::vec4& solid = lists.solid.at(u, v);
-        if (std::isfinite(solid.a)) solid = glm::vec4(glm::vec3(solid) * static_cast<float>(openAt(x, y, solid.a)), solid.a);
+        if (std::isfinite(solid.a))
+          solid = glm::vec4(glm::vec3(solid) * static_cast<float>(openAt(x, y, solid.a)), solid.a);
       }
     });
   }
@@ -170,9 +171,10 @@ void holdPictures(Plants plants, const std::string& name) {
     level += g(truth);
   }
   const auto count = static_cast<double>(rims);
-  printf("[ figure ] %s, %zu rim pixels of mean brightness %.4f: off by %.4f without occlusion, %.4f with it on solids "
-         "alone, %.4f inferred (%.0f%%)\n",
-         name.c_str(), rims, level / count, open / count, bright / count, error / count, 100.0 * error / bright);
+  printf(
+      "[ figure ] %s, %zu rim pixels of mean brightness %.4f: off by %.4f without occlusion, %.4f with it on solids "
+      "alone, %.4f inferred (%.0f%%)\n",
+      name.c_str(), rims, level / count, open / count, bright / count, error / count, 100.0 * error / bright);
   ASSERT_GT(rims, 500u);
   EXPECT_LE(error, bright / 3.0);
   EXPECT_LT(bright, open * 1.05);

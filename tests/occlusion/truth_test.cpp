@@ -106,10 +106,9 @@ void holdAgainstRays(PlantScene (*make)(double), const std::string& name) {
     const Errors errors = measure(scene, fromDepth);
     const double ratio = errors.inferred.value() / errors.none.value();
     const double fall = 1.0 - errors.stepInferred.value() / errors.stepNone.value();
-    printf(
-        "[ figure ] %s, %d lines: %zu rims: mean error none %.4f, inferred %.4f (%.0f%%), published %.4f\n",
-        name.c_str(), height, errors.none.count(), errors.none.value(), errors.inferred.value(), 100 * ratio,
-        errors.published.value());
+    printf("[ figure ] %s, %d lines: %zu rims: mean error none %.4f, inferred %.4f (%.0f%%), published %.4f\n",
+           name.c_str(), height, errors.none.count(), errors.none.value(), errors.inferred.value(), 100 * ratio,
+           errors.published.value());
     if (fromDepth) {
       printf("[ figure ]   with sources from depth alone %.4f (%.0f%%)\n", errors.screen.value(),
              100 * errors.screen.value() / errors.none.value());

@@ -259,8 +259,9 @@ TEST(OcclusionVerb, BlendersTreeComesNearerToItsPathTracedPicture) {
   const std::string folder = freshFolder("occlusion_blender"), from = assets() + "/blender/";
   const ExrDocument truth = readExr(from + "gt_lit.exr");
   const auto error = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"composite", from + "gbuffer.exr", from + "transparent_lit.glb", "-o",
-                                       folder + "/out.exr", "--aa", "2", "--environment", "0.21,0.27,0.36"};
+    std::vector<std::string> arguments{"composite", from + "gbuffer.exr", from + "transparent_lit.glb",
+                                       "-o",        folder + "/out.exr",  "--aa",
+                                       "2",         "--environment",      "0.21,0.27,0.36"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Ended ended = runProgram(arguments);
     EXPECT_EQ(ended.code, 0) << ended.err;
@@ -276,11 +277,12 @@ TEST(OcclusionVerb, BlendersTreeComesNearerToItsPathTracedPicture) {
       }
     return sum / (120.0 * 150.0);
   };
-  const double none = error({"--occlusion", "off"}), solid = error({"--occlusion", "solid"}),
-               inferred = error({}), fromDepth = error({"--occlusion-source", "screen"});
-  printf("[ figure ] Blender's tree against path tracing: mean error %.4f without occlusion, %.4f of solids alone, %.4f "
-         "inferred, %.4f inferred without its AO layer\n",
-         none, solid, inferred, fromDepth);
+  const double none = error({"--occlusion", "off"}), solid = error({"--occlusion", "solid"}), inferred = error({}),
+               fromDepth = error({"--occlusion-source", "screen"});
+  printf(
+      "[ figure ] Blender's tree against path tracing: mean error %.4f without occlusion, %.4f of solids alone, %.4f "
+      "inferred, %.4f inferred without its AO layer\n",
+      none, solid, inferred, fromDepth);
   EXPECT_LT(solid, none);
   EXPECT_LT(inferred, solid);
   EXPECT_LT(fromDepth, solid);

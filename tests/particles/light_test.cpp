@@ -5,10 +5,10 @@
 
 #include "composite/over.h"
 #include "composite/resolve.h"
+#include "engine_bridge/scene/blocks.h"
 #include "engine_bridge/scene/gltf.h"
 #include "engine_bridge/scene/light_volume.h"
 #include "engine_bridge/scene/particle_grid.h"
-#include "engine_bridge/scene/blocks.h"
 #include "tests/gl/builder.h"
 #include "tests/particles/points_file.h"
 #include "tests/support/program.h"
@@ -57,8 +57,9 @@ TEST(Crossing, IsContinuousUnderBlendedMethodsAndJumpsUnderOver) {
       }
     for (int k = 0; k < 4; ++k) before[k] = now[k];
   }
-  std::printf("red channel, 40 steps of a millimetre: largest step under over %.4f; eq5 %.2g, eq7z %.2g, uniform %.2g\n",
-              jumpOver, jumpSums[0], jumpSums[1], jumpSums[2]);
+  std::printf(
+      "red channel, 40 steps of a millimetre: largest step under over %.4f; eq5 %.2g, eq7z %.2g, uniform %.2g\n",
+      jumpOver, jumpSums[0], jumpSums[1], jumpSums[2]);
   EXPECT_GT(jumpOver, 0.1);
   for (const double jump : jumpSums) EXPECT_LT(jump, 1e-3);
 }
@@ -75,7 +76,8 @@ Cloud cloudOf(int count, float radius, float alpha) {
   Random random(17);
   PointsFile points;
   for (int i = 0; i < count; ++i)
-    points.positions.push_back({static_cast<float>(random.between(-1, 1)), static_cast<float>(random.between(-1, 1)), static_cast<float>(random.between(-1, 1))});
+    points.positions.push_back({static_cast<float>(random.between(-1, 1)), static_cast<float>(random.between(-1, 1)),
+                                static_cast<float>(random.between(-1, 1))});
   points.radii.assign(points.positions.size(), radius);
   points.material = unlitPoints(1, 1, 1, alpha);
   writePoints(folder + "/points.gltf", points);
@@ -99,7 +101,8 @@ TEST(SelfShadow, FallsThroughACloudAsItsDensitySays) {
   ASSERT_TRUE(grid);
   const Fog fog = particleFog(grid, cloud.camera, cloud.lights);
   const double volume = 4.0 / 3.0 * M_PI * std::pow(static_cast<double>(kRadius), 3);
-  const double extinction = -std::log1p(-static_cast<double>(kAlpha)) / (2 * static_cast<double>(kRadius)) * volume * kCount / 8.0;
+  const double extinction =
+      -std::log1p(-static_cast<double>(kAlpha)) / (2 * static_cast<double>(kRadius)) * volume * kCount / 8.0;
   double worst = 0;
   for (const double depth : {0.25, 0.5, 1.0, 1.5}) {
     double mean = 0;
@@ -117,7 +120,8 @@ TEST(SelfShadow, FallsThroughACloudAsItsDensitySays) {
   for (const int edge : {8, 32, 100}) {
     const auto other = particleGrid(cloud.scene, edge);
     double mass = 0;
-    const double cell = 1.0 / std::abs(glm::determinant(glm::dmat3(other->boxFromWorld))) / static_cast<double>(other->density.texels.size());
+    const double cell = 1.0 / std::abs(glm::determinant(glm::dmat3(other->boxFromWorld))) /
+                        static_cast<double>(other->density.texels.size());
     for (const float value : other->density.texels) mass += static_cast<double>(value) * cell;
     EXPECT_NEAR(mass / (extinction * 8.0), 1.0, 1e-3) << edge;
   }
@@ -145,7 +149,8 @@ TEST(SelfShadow, LitParticlesDarkenAwayFromTheLight) {
   settings.particleLight = nullptr;
   const OitPlanes open = stage.accumulate(settings);
   const double top = meanRow(shadowed, 16), bottom = meanRow(shadowed, 32);
-  std::printf("self-shadowed: top %.4f bottom %.4f; without: %.4f %.4f (1/4pi is %.4f)\n", top, bottom, meanRow(open, 16), meanRow(open, 32), 1 / (4 * M_PI));
+  std::printf("self-shadowed: top %.4f bottom %.4f; without: %.4f %.4f (1/4pi is %.4f)\n", top, bottom,
+              meanRow(open, 16), meanRow(open, 32), 1 / (4 * M_PI));
   EXPECT_NEAR(meanRow(open, 16), 1 / (4 * M_PI), 1e-4);
   EXPECT_NEAR(meanRow(open, 32), 1 / (4 * M_PI), 1e-4);
   EXPECT_LT(top, 1 / (4 * M_PI));

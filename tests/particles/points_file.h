@@ -23,7 +23,8 @@ inline std::string base64(const std::string& bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
     for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kLetters[word >> (18 - 6 * k) & 63u] : '=';
   }
   return text;
@@ -40,7 +41,10 @@ inline void writePoints(const std::string& path, const PointsFile& points) {
   const auto add = [&](const char* name, const auto& values, const char* type) {
     const std::size_t size = values.size() * sizeof(values[0]);
     file["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", size}});
-    file["accessors"].push_back({{"bufferView", file["bufferViews"].size() - 1}, {"componentType", 5126}, {"count", values.size()}, {"type", type}});
+    file["accessors"].push_back({{"bufferView", file["bufferViews"].size() - 1},
+                                 {"componentType", 5126},
+                                 {"count", values.size()},
+                                 {"type", type}});
     attributes[name] = file["accessors"].size() - 1;
     bytes.append(reinterpret_cast<const char*>(values.data()), size);
   };

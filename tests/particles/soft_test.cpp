@@ -27,11 +27,15 @@ TEST(Particle, SoftIntersectionIsTheClosedForm) {
   Random random(3);
   double worst = 0;
   for (int i = 0; i < 100000; ++i) {
-    const double square = random.uniform(), z = random.between(0.01, 20), radius = random.between(1e-3, 3), middle = random.uniform() * 0.999;
+    const double square = random.uniform(), z = random.between(0.01, 20), radius = random.between(1e-3, 3),
+                 middle = random.uniform() * 0.999;
     const double behind = z + radius * random.between(-1.5, 1.5);
     if (behind <= 0) continue;
-    const shading::Chord chord = shading::chordOf(static_cast<float>(square), static_cast<float>(z), static_cast<float>(radius), static_cast<float>(behind));
-    worst = std::max(worst, std::abs(static_cast<double>(shading::ballCoverage(static_cast<float>(middle), chord.share)) - coverage(square, z, radius, behind, middle)));
+    const shading::Chord chord = shading::chordOf(static_cast<float>(square), static_cast<float>(z),
+                                                  static_cast<float>(radius), static_cast<float>(behind));
+    worst =
+        std::max(worst, std::abs(static_cast<double>(shading::ballCoverage(static_cast<float>(middle), chord.share)) -
+                                 coverage(square, z, radius, behind, middle)));
   }
   std::printf("largest error of 100,000: %.2g\n", worst);
   EXPECT_LT(worst, 1e-3);  // z - reach cancels: a radius of a millimetre at 20 m is known to a thousandth
@@ -42,7 +46,8 @@ TEST(Particle, CoverageIsContinuousInTheDepthBehind) {
   double before = 0;
   for (int i = 0; i <= 4000; ++i) {
     const float behind = 4.0f + static_cast<float>(i) * 5e-4f;
-    const double now = static_cast<double>(shading::ballCoverage(0.9f, shading::chordOf(0.1f, 5.0f, 0.5f, behind).share));
+    const double now =
+        static_cast<double>(shading::ballCoverage(0.9f, shading::chordOf(0.1f, 5.0f, 0.5f, behind).share));
     EXPECT_GE(now, before - 1e-6);
     EXPECT_LT(now - before, 2e-3);
     before = now;
@@ -71,16 +76,19 @@ TEST(Particle, EveryKindCompilesAndLinks) {
     frame.surroundings = bit(7);
     frame.environment = !bit(7);
     frame.solids = bit(2);
-    std::vector<std::string> defines = gl::outputDefines(static_cast<gl::Output>(bits % static_cast<int>(gl::kOutputs)), frame, shading::PLD_WEIGHT_EQ5, 0);
+    std::vector<std::string> defines = gl::outputDefines(static_cast<gl::Output>(bits % static_cast<int>(gl::kOutputs)),
+                                                         frame, shading::PLD_WEIGHT_EQ5, 0);
     const std::vector<std::string> surface = gl::surfaceDefines(material, bit(5), frame, false, points);
     defines.insert(defines.end(), surface.begin(), surface.end());
     ASSERT_NO_THROW(gl::buildProgram("gl/transparent.vert", "gl/transparent.frag", defines)) << bits;
     if (points || material.billboard) {
-      ASSERT_NO_THROW(gl::buildProgram("gl/transparent.vert", "gl/shadow_caster.frag", [&] {
-        std::vector<std::string> caster = surface;
-        caster.emplace_back("EXACT_COVERAGE");
-        return caster;
-      }())) << bits;
+      ASSERT_NO_THROW(gl::buildProgram("gl/transparent.vert", "gl/shadow_caster.frag",
+                                       [&] {
+                                         std::vector<std::string> caster = surface;
+                                         caster.emplace_back("EXACT_COVERAGE");
+                                         return caster;
+                                       }()))
+          << bits;
     }
   }
 }
@@ -125,14 +133,16 @@ TEST_F(PointsShot, GlDrawsTheBallItsAttributesSay) {
           const double v = (static_cast<double>(at.y) - static_cast<double>(points.positions[i][1])) / radius;
           const double alpha = 0.9 * static_cast<double>(points.colours[i][3]);
           if (u * u + v * v < 1.0)
-            wanted.emplace_back(coverage(u * u + v * v, z, radius, behind, alpha), 0.8 * static_cast<double>(points.colours[i][0]));
+            wanted.emplace_back(coverage(u * u + v * v, z, radius, behind, alpha),
+                                0.8 * static_cast<double>(points.colours[i][0]));
         }
         std::size_t seen = 0;
         for (std::uint64_t k = lists.offsets[pixel]; k < lists.offsets[pixel + 1]; ++k) {
           const Fragment& fragment = lists.fragments[k];
           double off = 1;
           for (const auto& [alpha, red] : wanted)
-            off = std::min(off, std::abs(static_cast<double>(fragment.coverage) - alpha) + std::abs(static_cast<double>(fragment.radiance.r) - alpha * red));
+            off = std::min(off, std::abs(static_cast<double>(fragment.coverage) - alpha) +
+                                    std::abs(static_cast<double>(fragment.radiance.r) - alpha * red));
           worst = std::max(worst, off);
           ++seen;
         }
@@ -152,7 +162,8 @@ TEST_F(PointsShot, StreamedPointsAreTheSameInAnyChunk) {
   Random random(9);
   PointsFile points;
   for (int i = 0; i < 5000; ++i) {
-    points.positions.push_back({static_cast<float>(random.between(-2, 2)), static_cast<float>(random.between(-1, 1)), static_cast<float>(random.between(-8, -3))});
+    points.positions.push_back({static_cast<float>(random.between(-2, 2)), static_cast<float>(random.between(-1, 1)),
+                                static_cast<float>(random.between(-8, -3))});
     points.radii.push_back(static_cast<float>(random.between(0.01, 0.1)));
   }
   points.material = unlitPoints(0.8f, 0.7f, 0.6f, 0.2f);
@@ -168,13 +179,15 @@ TEST_F(PointsShot, StreamedPointsAreTheSameInAnyChunk) {
       for (std::size_t i = 0; i + 1 < lists.offsets.size(); ++i) {
         sorted.emplace_back(lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i]),
                             lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i + 1]));
-        std::sort(sorted.back().begin(), sorted.back().end(), [](const Fragment& a, const Fragment& b) { return a.identity < b.identity; });
+        std::sort(sorted.back().begin(), sorted.back().end(),
+                  [](const Fragment& a, const Fragment& b) { return a.identity < b.identity; });
       }
     EXPECT_EQ(stage.statistics.triangles, 5000u);
     return sorted;
   };
   const auto whole = drawn(0, 0, {});
-  for (const auto& other : {drawn(1 << 20, 1 << 18, {}), drawn(1 << 20, 0, {SubmissionOrder::shuffle, 5}), drawn(0, 1 << 17, {SubmissionOrder::reverse, 0})}) {
+  for (const auto& other : {drawn(1 << 20, 1 << 18, {}), drawn(1 << 20, 0, {SubmissionOrder::shuffle, 5}),
+                            drawn(0, 1 << 17, {SubmissionOrder::reverse, 0})}) {
     ASSERT_EQ(other.size(), whole.size());
     for (std::size_t i = 0; i < whole.size(); ++i) {
       ASSERT_EQ(other[i].size(), whole[i].size());

@@ -1,5 +1,5 @@
-// The unshared voice of fog: a front-to-back march in double precision, in world space, written from the radiative transfer
-// of single scattering alone. Includes nothing of shaders/ or composite/.
+// The unshared voice of fog: a front-to-back march in double precision, in world space, written from the radiative
+// transfer of single scattering alone. Includes nothing of shaders/ or composite/.
 #pragma once
 #include <array>
 #include <functional>
@@ -30,7 +30,8 @@ struct Marched {
 
 // From `eye` along the unit `way`. Midpoint rule, `steps` even steps; light is not dimmed on its way to the ray but by
 // Lamp::visible.
-Marched orderedMarch(const Air& air, const std::vector<Lamp>& lamps, const Vec& eye, const Vec& way, double length, int steps);
+Marched orderedMarch(const Air& air, const std::vector<Lamp>& lamps, const Vec& eye, const Vec& way, double length,
+                     int steps);
 
 // Of light that turns by the angle with this cosine.
 double phase(double cosine, double g);

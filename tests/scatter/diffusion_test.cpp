@@ -230,7 +230,8 @@ TEST(Diffusion, FastGatherIsCloseToTheExactOne) {
       }
     }
     std::printf("fast against exact gather, %s, D up to %4.1f px: mean error %.3f%%, largest %.2f%%\n",
-                spread > 0 ? "panes, ramps, holes" : "edges everywhere   ", static_cast<double>(largest), 100 * sum / static_cast<double>(values), 100 * most);
+                spread > 0 ? "panes, ramps, holes" : "edges everywhere   ", static_cast<double>(largest),
+                100 * sum / static_cast<double>(values), 100 * most);
     worstMean = std::max(worstMean, sum / static_cast<double>(values));
     worstAll = std::max(worstAll, most);
   }

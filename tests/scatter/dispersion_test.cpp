@@ -64,7 +64,8 @@ TEST(Dispersion, EveryChannelBendsAsInDouble) {
           const auto z = static_cast<double>(fragment.z);
           const glm::dvec3 p(stage.at(lists.window.x0 + x + 0.5, lists.window.y0 + y + 0.5, z));
           const glm::dvec2 found[] = {glm::dvec2(fragment.offset) + glm::dvec2(apart.x, apart.y),
-                                      glm::dvec2(fragment.offset), glm::dvec2(fragment.offset) + glm::dvec2(apart.z, apart.w)};
+                                      glm::dvec2(fragment.offset),
+                                      glm::dvec2(fragment.offset) + glm::dvec2(apart.z, apart.w)};
           for (int c = 0; c < 3; ++c) {
             const glm::dvec3 ray = glm::refract(glm::normalize(p), normal, 1 / index[c]);
             const glm::dvec3 hit = p + ray * ((12.0 - z) / -ray.z);

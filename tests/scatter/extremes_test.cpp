@@ -41,8 +41,7 @@ TEST(LookupExtremes, EveryIndexAngleAndDistanceOfRefraction) {
     const glm::vec3 toEye(0, 0, 1);
     const glm::vec3 normal(static_cast<float>(std::sin(angle)), 0.0f, static_cast<float>(std::cos(angle)));
     const float behind = random.below(3) ? z * (1.0f + random.uniformf()) : random.below(2) ? z : INFINITY;
-    const glm::vec2 offset =
-        shading::refractionOffset(settings, glm::vec3(0, 0, -z), toEye, normal, eta, behind, 0.1f);
+    const glm::vec2 offset = shading::refractionOffset(settings, glm::vec3(0, 0, -z), toEye, normal, eta, behind, 0.1f);
     ASSERT_TRUE(std::isfinite(offset.x) && std::isfinite(offset.y)) << i;
     largest = std::max(largest, static_cast<double>(std::abs(offset.x)));
     // Looked up from a picture of 16 pixels: the edge is read, or the pixel itself.

@@ -155,7 +155,8 @@ TEST(ScatterGl, BackFacesAndThinWallsDoNotRefract) {
   }
 }
 
-// A ball before a far plane whose colour is its place: what it shows lies on the other side, up for down, left for right.
+// A ball before a far plane whose colour is its place: what it shows lies on the other side, up for down, left for
+// right.
 TEST(ScatterGl, BallInvertsItsBackground) {
   constexpr int kSize = 96;
   Stage stage(kSize, kSize);
@@ -172,7 +173,8 @@ TEST(ScatterGl, BallInvertsItsBackground) {
     for (int i = 0; i <= kSegments; ++i) {
       const double polar = glm::pi<double>() * j / kRings, around = 2 * glm::pi<double>() * i / kSegments;
       Vertex vertex{};
-      vertex.normal = glm::vec3(std::sin(polar) * std::cos(around), std::cos(polar), -std::sin(polar) * std::sin(around));
+      vertex.normal =
+          glm::vec3(std::sin(polar) * std::cos(around), std::cos(polar), -std::sin(polar) * std::sin(around));
       vertex.position = static_cast<float>(kRadius) * vertex.normal - glm::vec3(0, 0, kZ);
       vertex.colour = glm::vec4(1.0f);
       sphere.vertices.push_back(vertex);

@@ -18,10 +18,10 @@ struct Shot {
   Shot() {
     writeOpaque(opaque);
     Quad frosted;
-    frosted.material = {{"pbrMetallicRoughness", {{"metallicFactor", 0.0},
-                                                   {"roughnessFactor", 0.5},
-                                                   {"baseColorFactor", {0.9, 0.6, 0.3, 1.0}}}},
-                        {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}};
+    frosted.material = {
+        {"pbrMetallicRoughness",
+         {{"metallicFactor", 0.0}, {"roughnessFactor", 0.5}, {"baseColorFactor", {0.9, 0.6, 0.3, 1.0}}}},
+        {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}};
     Quad smoke;
     smoke.corner = {-0.5f, -0.5f, -2.0f};
     smoke.across = {1.0f, 0.0f, -0.5f};
@@ -74,8 +74,12 @@ TEST(ScatterProgram, NotFiniteColourIsContainedAndReported) {
   red.at(30, 31) = std::numeric_limits<float>::quiet_NaN();
   green.at(40, 20) = std::numeric_limits<float>::infinity();
   writeLayers(shot.opaque, window, window,
-              {{"", {{"R", red}, {"G", green}, {"B", green}, {"A", Image<float>(64, 64, 1.0f)},
-                     {"Z", Image<float>(64, 64, 10.0f)}}}},
+              {{"",
+                {{"R", red},
+                 {"G", green},
+                 {"B", green},
+                 {"A", Image<float>(64, 64, 1.0f)},
+                 {"Z", Image<float>(64, 64, 10.0f)}}}},
               {}, nullptr, false);
   const Ended ended = shot.composite("out.exr", {});
   ASSERT_EQ(ended.code, 0) << ended.err;
@@ -129,8 +133,8 @@ TEST(ScatterProgram, PublishedPlanesResolveToTheSamePicture) {
   const Ended ended = runProgram({"resolve", shot.opaque, planes, "-o", shot.folder + "/two.exr"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   for (const std::string name : {"one", "other"}) {
-    std::vector<std::string> arguments{"composite",         shot.opaque,   shot.glass,  "-o",
-                                       shot.folder + "/" + name + ".exr", "--precision", "published", "--aa", "1"};
+    std::vector<std::string> arguments{"composite",   shot.opaque, shot.glass, "-o", shot.folder + "/" + name + ".exr",
+                                       "--precision", "published", "--aa",     "1"};
     if (name == "other") arguments.emplace_back("--no-self-modulation");
     ASSERT_EQ(runProgram(arguments).code, 0);
   }

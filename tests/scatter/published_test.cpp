@@ -22,8 +22,8 @@ std::vector<float> halves() {
   std::vector<float> values;
   for (int exponent = 0; exponent < 31; ++exponent)
     for (int mantissa = 0; mantissa < 1024; ++mantissa)
-      values.push_back(static_cast<float>(exponent == 0 ? std::ldexp(mantissa, -24)
-                                                        : std::ldexp(1024 + mantissa, exponent - 25)));
+      values.push_back(
+          static_cast<float>(exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25)));
   return values;
 }
 
@@ -172,9 +172,10 @@ TEST(Published, GlAndCpuAgreeToAStepALayer) {
       worst[1] = std::max(worst[1], 255 * std::abs(static_cast<double>(gl.depth[i][c] - cpu.depth[i][c])) / n);
     }
     for (int c = 0; c < 2; ++c)
-      worst[2] = std::max(
-          worst[2], 127.0 / 63 * std::abs(static_cast<double>(gl.refraction[i][c] - cpu.refraction[i][c])) / n);
-    worst[3] = std::max(worst[3], 255.0 / 3969 * std::abs(static_cast<double>(gl.refraction[i].w - cpu.refraction[i].w)) / n);
+      worst[2] = std::max(worst[2],
+                          127.0 / 63 * std::abs(static_cast<double>(gl.refraction[i][c] - cpu.refraction[i][c])) / n);
+    worst[3] =
+        std::max(worst[3], 255.0 / 3969 * std::abs(static_cast<double>(gl.refraction[i].w - cpu.refraction[i].w)) / n);
   }
   std::printf("published, GL against CPU, steps a layer: A %.2f, beta %.2f, delta %.2f, D2 %.2f\n", worst[0], worst[1],
               worst[2], worst[3]);
@@ -217,7 +218,8 @@ TEST(Published, ClampsAreCountedAndFinite) {
       planes = pass.accumulate(settings);
       clamps = pass.statistics().clamps;
     } else {
-      pass.fragments(settings, [&](const FragmentLists& lists) { foldPublished(lists, settings.weight, planes, clamps); });
+      pass.fragments(settings,
+                     [&](const FragmentLists& lists) { foldPublished(lists, settings.weight, planes, clamps); });
     }
     std::printf("%s: clamped %llu numbers; pixels: radiance %llu, diffusion %llu, refraction %llu\n",
                 onGl ? "GL" : "CPU", static_cast<unsigned long long>(clamps.written),
@@ -250,8 +252,8 @@ TEST(Published, LosesWhatItsLayoutLoses) {
   glass.coverage = 1.0f;
   glass.offset = glm::vec2(9, 4);
   const OitPlanes clear = folded({glass}, clamps);
-  EXPECT_FALSE(clear.scatters() && clear.refraction[0].z > 0.0f);        // clear glass does not refract
-  EXPECT_EQ(resolve(clear, {}).light[0], glm::vec3(0));                  // and has no highlight
+  EXPECT_FALSE(clear.scatters() && clear.refraction[0].z > 0.0f);  // clear glass does not refract
+  EXPECT_EQ(resolve(clear, {}).light[0], glm::vec3(0));            // and has no highlight
 
   Fragment thin{};
   thin.coverage = 0.001f;

@@ -19,8 +19,8 @@ TEST(ResolveGl, GivesTheFileOfTheCpuOnEverySample) {
     if (file.size() < 5 || file.substr(file.size() - 4) != ".glb") continue;
     const std::string name = file.substr(0, file.size() - 4);
     for (const std::string resolver : {"cpu", "gl"}) {
-      const Ended ended = runProgram({"composite", name + ".exr", name + ".glb", "-o", name + "-" + resolver + ".out.exr",
-                                      "--aa", "2", "--resolve", resolver},
+      const Ended ended = runProgram({"composite", name + ".exr", name + ".glb", "-o",
+                                      name + "-" + resolver + ".out.exr", "--aa", "2", "--resolve", resolver},
                                      options);
       ASSERT_EQ(ended.code, 0) << name << ": " << ended.err;
     }
@@ -40,8 +40,8 @@ TEST(ResolveGl, RefusesWhatHasNoSums) {
   RunOptions generator = options;
   generator.program = "pellucid_samples";
   ASSERT_EQ(runProgram({".", "bars", "90"}, generator).code, 0);
-  const Ended ended =
-      runProgram({"composite", "bars.exr", "bars.glb", "-o", "out.exr", "--resolve", "gl", "--method", "over"}, options);
+  const Ended ended = runProgram(
+      {"composite", "bars.exr", "bars.glb", "-o", "out.exr", "--resolve", "gl", "--method", "over"}, options);
   EXPECT_EQ(ended.code, 2);
   EXPECT_NE(ended.err.find("--resolve: found gl with --method over, expected cpu"), std::string::npos) << ended.err;
 }
@@ -63,9 +63,8 @@ TEST(LowResolutionProgram, FlagsThatCannotBeHonouredAreUsageErrors) {
   EXPECT_NE(unmarked.err.find("no transparent material is marked"), std::string::npos) << unmarked.err;
   EXPECT_EQ(run({"--low-res", "3"}).code, 2);
   const std::vector<std::string> mark{"--set", "puff 0.lowResolution=true", "--set", "puff 1.lowResolution=true"};
-  for (const std::vector<std::string>& every : {std::vector<std::string>{"--method", "over"},
-                                               {"--precision", "exact"},
-                                               {"--tolerance", "0.1"}}) {
+  for (const std::vector<std::string>& every :
+       {std::vector<std::string>{"--method", "over"}, {"--precision", "exact"}, {"--tolerance", "0.1"}}) {
     std::vector<std::string> flags = mark;
     flags.insert(flags.end(), every.begin(), every.end());
     const Ended passedOver = run(flags);

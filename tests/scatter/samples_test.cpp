@@ -44,7 +44,8 @@ TEST(EverySample, PruningChangesNoBit) {
     for (const bool published : {false, true}) {
       const std::string precision = published ? "published" : "float";
       pruned = composite(folder, name, "pruned.exr", {"--aa", "1", "--precision", precision});
-      const nlohmann::json full = composite(folder, name, "full.exr", {"--aa", "1", "--precision", precision, "--no-prune"});
+      const nlohmann::json full =
+          composite(folder, name, "full.exr", {"--aa", "1", "--precision", precision, "--no-prune"});
       EXPECT_TRUE(slurp(folder + "/pruned.exr") == slurp(folder + "/full.exr")) << name << ' ' << precision;
       bits[published][0] = pruned["bitsPerPixel"];
       bits[published][1] = full["bitsPerPixel"];
@@ -83,7 +84,8 @@ TEST(EverySample, PictureIsTransparentPlusTransmissionTimesBackground) {
         float l = 0, t = 0;
         std::memcpy(&l, light->bytes.data() + i * sizeof l, sizeof l);
         std::memcpy(&t, passed->bytes.data() + i * sizeof t, sizeof t);
-        const double expected = static_cast<double>(l) + static_cast<double>(t) * static_cast<double>(before.beauty[i][c]);
+        const double expected =
+            static_cast<double>(l) + static_cast<double>(t) * static_cast<double>(before.beauty[i][c]);
         const double ulp = std::ldexp(1.0, std::max(std::ilogb(std::max(expected, 1e-30)), -14) - 10);
         worst = std::max(worst, std::abs(static_cast<double>(after.beauty[i][c]) - expected) / ulp);
       }
@@ -93,12 +95,12 @@ TEST(EverySample, PictureIsTransparentPlusTransmissionTimesBackground) {
   }
 }
 
-// The samples with hundreds of thousands of triangles are left to ./dev campaign: fifteen tiles draw them fifteen times.
+// The samples with hundreds of thousands of triangles are left to ./dev campaign: fifteen tiles draw them fifteen
+// times.
 TEST(EverySample, TwentyShufflesChangeNoBitOfTheExactTier) {
   RunOptions options;
   options.program = "campaign_order";
-  const Ended ended =
-      runProgram({"20", "ball", "bars", "bottles", "foliage", "frosted", "smoke", "stacks"}, options);
+  const Ended ended = runProgram({"20", "ball", "bars", "bottles", "foliage", "frosted", "smoke", "stacks"}, options);
   std::printf("%s%s", ended.out.c_str(), ended.err.c_str());
   EXPECT_EQ(ended.code, 0);
 }

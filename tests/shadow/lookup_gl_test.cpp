@@ -68,9 +68,10 @@ TEST(ShadowLookup, GlAgreesWithTheCpu) {
   Random random(1);
   std::vector<glm::vec4> points;
   for (int i = 0; i < 4000; ++i)
-    points.push_back(glm::vec4(glm::vec3(camera.viewFromWorld * glm::dvec4(random.between(-1.5, 1.5), random.between(-.5, 2.5),
-                                                                           random.between(-1.5, 1.5), 1.0)),
-                               0.0f));
+    points.push_back(glm::vec4(
+        glm::vec3(camera.viewFromWorld *
+                  glm::dvec4(random.between(-1.5, 1.5), random.between(-.5, 2.5), random.between(-1.5, 1.5), 1.0)),
+        0.0f));
   for (const auto form : {ShadowMapSettings::Form::variance, ShadowMapSettings::Form::corrected}) {
     ShadowMapSettings settings;
     settings.form = form;

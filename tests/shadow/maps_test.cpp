@@ -54,7 +54,8 @@ Difference compare(const ShadowMaps& maps, const ShadowRays& rays, const Camera&
       const glm::dvec2 at = low + (high - low) * glm::dvec2((i + .5) / kSteps, (j + .5) / kSteps);
       const glm::dvec3 point = viewOf(camera, {at.x, height, at.y});
       const glm::dvec3 truth(rays.visibility(light, point));
-      const glm::dvec3 found(onOpaque ? maps.onOpaque(light, glm::vec3(point)) : maps.visibility(light, glm::vec3(point)));
+      const glm::dvec3 found(onOpaque ? maps.onOpaque(light, glm::vec3(point))
+                                      : maps.visibility(light, glm::vec3(point)));
       for (int c = 0; c < 3; ++c) {
         difference.mean += std::abs(found[c] - truth[c]) / (3.0 * kSteps * kSteps);
         difference.worst = std::max(difference.worst, std::abs(found[c] - truth[c]));
@@ -112,16 +113,17 @@ TEST(ShadowMaps, FlatReceiverUnderAPane) {
     const ShadowMaps maps = renderShadowMaps(context, scene, camera, nullptr, settings, &statistics);
     const Difference in = compare(maps, rays, camera, 0, {-.6, -.7}, {.9, .8});
     const Difference beside = compare(maps, rays, camera, 0, {1.4, -2}, {3, 2});
-    std::printf("%-10s %d^2: drawn in %.2f s, filtered in %.2f s, %zu MiB; error mean %.5f, worst %.5f, deviation %.5f\n",
-                nameOf(form), settings.size, statistics.drawSeconds, statistics.filterSeconds, statistics.bytes >> 20,
-                in.mean, in.worst, in.spread);
+    std::printf(
+        "%-10s %d^2: drawn in %.2f s, filtered in %.2f s, %zu MiB; error mean %.5f, worst %.5f, deviation %.5f\n",
+        nameOf(form), settings.size, statistics.drawSeconds, statistics.filterSeconds, statistics.bytes >> 20, in.mean,
+        in.worst, in.spread);
     EXPECT_EQ(beside.worst, 0.0) << nameOf(form);
     if (form == Form::variance) {
       EXPECT_LT(in.spread, 1e-4);  // rounded steps of the optical depth are all the noise there is
       EXPECT_LT(in.worst, 3e-4);
     }
-    // A coin per texel: the tent keeps sqrt(sum of its squared weights) of the deviation, 8.4% of .5 in one texel, and a
-    // bilinear lookup a little less. One per cent needs stratified coins or the exact density.
+    // A coin per texel: the tent keeps sqrt(sum of its squared weights) of the deviation, 8.4% of .5 in one texel, and
+    // a bilinear lookup a little less. One per cent needs stratified coins or the exact density.
     if (form == Form::published) {
       EXPECT_NEAR(in.spread, .04, .006);
     }

@@ -24,7 +24,8 @@ struct Sheets {
     for (int i = 0; i < count; ++i) {
       Primitive sheet = quad(0, 1.5f);
       for (Vertex& vertex : sheet.vertices) {
-        vertex.position = {vertex.position.x, -vertex.position.z, -4.0f - 2.0f * static_cast<float>(i) / static_cast<float>(count)};
+        vertex.position = {vertex.position.x, -vertex.position.z,
+                           -4.0f - 2.0f * static_cast<float>(i) / static_cast<float>(count)};
         vertex.normal = {0, 0, 1};
       }
       Material smoke = glass(glm::vec3(1.0f));
@@ -48,7 +49,8 @@ std::vector<std::vector<Fragment>> sorted(const std::vector<FragmentLists>& tile
     for (std::size_t i = 0; i + 1 < lists.offsets.size(); ++i) {
       pixels.emplace_back(lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i]),
                           lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i + 1]));
-      std::sort(pixels.back().begin(), pixels.back().end(), [](const Fragment& a, const Fragment& b) { return a.z < b.z; });
+      std::sort(pixels.back().begin(), pixels.back().end(),
+                [](const Fragment& a, const Fragment& b) { return a.z < b.z; });
     }
   return pixels;
 }
@@ -81,7 +83,9 @@ PassSettings shadowedBy(const Sheets& sheets, Form form) {
   return settings;
 }
 
-double lightOf(const Fragment& fragment) { return static_cast<double>(fragment.radiance.g / fragment.coverage); }
+double lightOf(const Fragment& fragment) {
+  return static_cast<double>(fragment.radiance.g / fragment.coverage);
+}
 
 TEST(SelfShadow, SmokeDarkensAwayFromTheLight) {
   for (const auto& [count, alpha] : {std::pair(1, .5f), std::pair(4, .4f), std::pair(40, .05f)}) {
@@ -104,11 +108,12 @@ TEST(SelfShadow, SmokeDarkensAwayFromTheLight) {
       }
       error /= number * brightest;
       unshadowed /= number * brightest;
-      std::printf("%2d sheets, %s: light of a fragment off by %.4f of the full light; %.4f without shadows; last sheet "
-                  "%.3f of the first, by rays %.3f\n",
-                  count, form == Form::variance ? "variance" : "corrected", error, unshadowed,
-                  lightOf(mapped[middle].back()) / lightOf(mapped[middle].front()),
-                  lightOf(truth[middle].back()) / lightOf(truth[middle].front()));
+      std::printf(
+          "%2d sheets, %s: light of a fragment off by %.4f of the full light; %.4f without shadows; last sheet "
+          "%.3f of the first, by rays %.3f\n",
+          count, form == Form::variance ? "variance" : "corrected", error, unshadowed,
+          lightOf(mapped[middle].back()) / lightOf(mapped[middle].front()),
+          lightOf(truth[middle].back()) / lightOf(truth[middle].front()));
       if (count == 1)
         EXPECT_LT(error, 1e-5);  // a lone sheet does not shadow itself; rays shade it at the rounded depth
       else

@@ -245,8 +245,8 @@ TEST_F(Shadow, BlenderSceneComesNearerToThePathTracedTruth) {
     std::size_t changed = 0, beside = 0;  // beside: a map's tent reaches some texels beyond the shadow
     for (std::size_t i = 0; i < plain.size(); ++i) changed += plain[i] != shadowed[i] ? 1 : 0;
     const double after = meanError(shadowed);
-    std::printf("%s: mean error to gt_lit %.4f without shadows, %.4f with; %.1f%% of the pixels changed\n", kind.c_str(),
-                before, after, 100.0 * static_cast<double>(changed) / static_cast<double>(plain.size()));
+    std::printf("%s: mean error to gt_lit %.4f without shadows, %.4f with; %.1f%% of the pixels changed\n",
+                kind.c_str(), before, after, 100.0 * static_cast<double>(changed) / static_cast<double>(plain.size()));
     EXPECT_LT(after, .9 * before);
     EXPECT_LT(changed, plain.size() / 2);  // the sky and the open floor keep their bits
     if (exact.empty()) {
@@ -267,9 +267,10 @@ TEST_F(Shadow, BlenderSceneComesNearerToThePathTracedTruth) {
     apart /= 3.0 * static_cast<double>(bare);
     upon /= 3.0 * static_cast<double>(exact.size() - bare);
     dimmed /= 3.0 * static_cast<double>(exact.size() - bare);
-    std::printf("maps against rays: mean difference %.5f on opaque things, %.5f on transparent ones, which the shadows "
-                "change by %.5f; %.2f%% of the pixels changed beside the exact shadow\n",
-                apart, upon, dimmed, 100.0 * static_cast<double>(beside) / static_cast<double>(bare));
+    std::printf(
+        "maps against rays: mean difference %.5f on opaque things, %.5f on transparent ones, which the shadows "
+        "change by %.5f; %.2f%% of the pixels changed beside the exact shadow\n",
+        apart, upon, dimmed, 100.0 * static_cast<double>(beside) / static_cast<double>(bare));
     EXPECT_LT(apart, .1 * (before - after));
     EXPECT_LT(upon, .2 * dimmed);
   }

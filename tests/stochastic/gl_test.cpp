@@ -38,7 +38,8 @@ glm::dvec3 pictureOf(const StochasticSums& sums, const glm::dvec3& behind, const
   return stochasticLight(sums, glm::dvec3(1.0) - sums.beta, settings) + shows * behind;
 }
 
-StochasticPlanes sampleStage(const Stage& stage, const StochasticPassSettings& samples, const PassSettings& settings = {}) {
+StochasticPlanes sampleStage(const Stage& stage, const StochasticPassSettings& samples,
+                             const PassSettings& settings = {}) {
   GlContext context;
   StochasticPass pass(context, stage.scene, stage.gbuffer, stage.camera);
   return pass.sample(settings, samples);
@@ -139,7 +140,8 @@ TEST(StochasticGl, AgreesWithTheCpuOnEveryPixel) {
               const StochasticSums cpu = samplePixel(layers, {u, v}, settings, masks, {});
               const StochasticSums gl = sumsAt(planes, u, v);
               EXPECT_EQ(glm::vec3(cpu.empty), glm::vec3(gl.empty)) << u << "," << v;
-              for (const auto& [a, b] : {std::pair(cpu.light, gl.light), {cpu.unit, gl.unit}, {cpu.added, gl.added}, {cpu.beta, gl.beta}})
+              for (const auto& [a, b] :
+                   {std::pair(cpu.light, gl.light), {cpu.unit, gl.unit}, {cpu.added, gl.added}, {cpu.beta, gl.beta}})
                 for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(a[c] - b[c]) / std::max(1.0, a[c]));
               ++compared;
             }

@@ -61,9 +61,10 @@ TEST_F(StochasticVerb, SameSeedSameBitsWhateverTheOrderChunksAndThreads) {
 TEST_F(StochasticVerb, GlDrawsWhatTheCpuSamples) {
   for (const std::string method : {"stochastic:basic", "stochastic:alpha", "stochastic:depth"}) {
     const auto cpu = composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16"});
-    const auto gl = composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16", "--sampled-on", "gl"});
-    const auto shuffled = composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16", "--sampled-on", "gl",
-                                     "--order", "shuffle:3", "--budget", "64K", "--threads", "1"});
+    const auto gl =
+        composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16", "--sampled-on", "gl"});
+    const auto shuffled = composite({"--method", method, "--aa", "4", "--seed", "7", "--samples", "16", "--sampled-on",
+                                     "gl", "--order", "shuffle:3", "--budget", "64K", "--threads", "1"});
     double worst = 0;
     for (std::size_t i = 0; i < cpu.size(); ++i) {
       ASSERT_EQ(gl[i], shuffled[i]) << i;

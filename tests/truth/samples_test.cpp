@@ -122,8 +122,9 @@ TEST_P(Shots, ToleranceIsNeverViolated) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Shots,
-                         ::testing::Values("bars", "bottles", "frosted", "ball", "smoke", "foliage", "cad", "chess", "clouds", "hair", "mixed",
-                                           "shadows", "shafts", "smokeball", "sparks", "street", "real"),
+                         ::testing::Values("bars", "bottles", "frosted", "ball", "smoke", "foliage", "cad", "chess",
+                                           "clouds", "hair", "mixed", "shadows", "shafts", "smokeball", "sparks",
+                                           "street", "real"),
                          [](const auto& shot) { return std::string(shot.param); });
 
 }  // namespace
