@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "engine_bridge/embree/shadow_rays.h"
-#include "engine_bridge/gl/transparent_pass.h"
+#include "engine_bridge/scene/pass_settings.h"
 #include "gbuffer/fragments.h"
 
 namespace pellucid {
