@@ -33,14 +33,6 @@ void add(Image<glm::vec4>& to, const Image<glm::vec4>& from) {
 
 }  // namespace
 
-std::string weightText(const shading::WeightSettings& weight) {
-  static constexpr const char* kNames[] = {"eq5",  "eq7",  "eq8",   "eq9",   "eq10",   "eq7z",
-                                           "eq8z", "eq9z", "eq10z", "power", "uniform"};
-  const bool known = weight.kind >= 0 && weight.kind < static_cast<int>(std::size(kNames));
-  return fmt::format("{} {:.9g} {:.9g} {:.9g}", known ? kNames[weight.kind] : fmt::format("kind{}", weight.kind),
-                     weight.rangeNear, weight.rangeFar, weight.exponent);
-}
-
 OitPlanes emptyPlanes(const Window& display, const Window& data) {
   OitPlanes planes;
   planes.display = display;

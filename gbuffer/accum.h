@@ -5,6 +5,7 @@
 
 #include "gbuffer/camera.h"
 #include "gbuffer/image.h"
+#include "gbuffer/weight_text.h"
 #include "shaders/shading.h"
 
 namespace pellucid {
@@ -51,9 +52,6 @@ struct OitPlanes {
     return targets;
   }
 };
-
-// "eq5 0.1 1000 3": the name that --weight takes, rangeNear, rangeFar and exponent, with every bit of them.
-std::string weightText(const shading::WeightSettings& weight);
 
 // Planes of the window, all sums 0, frontZ and solid.z +inf.
 OitPlanes emptyPlanes(const Window& display, const Window& data);

@@ -174,17 +174,9 @@ OitInfo infoOf(const HeaderReader& header) {
     header.refuse("pellucid:normalisation", normalisation);
   info.normalisation = normalisation == "spectral" ? shading::PLD_NORMALISE_SPECTRAL : shading::PLD_NORMALISE_PUBLISHED;
   const std::string weight = header.text("pellucid:weight");
-  const std::string name = weight.substr(0, weight.find(' '));
-  info.weight.kind = -1;
-  for (int kind = shading::PLD_WEIGHT_EQ5; kind <= shading::PLD_WEIGHT_UNIFORM; ++kind) {
-    const std::string known = weightText({kind, 0.0f, 0.0f, 0.0f});
-    if (known.substr(0, known.find(' ')) == name) info.weight.kind = kind;
-  }
-  if (info.weight.kind < 0) header.refuse("pellucid:weight", weight);
-  const std::vector<double> range = header.numbers("pellucid:weight", 3, weight.substr(name.size()));
-  info.weight.rangeNear = static_cast<float>(range[0]);
-  info.weight.rangeFar = static_cast<float>(range[1]);
-  info.weight.exponent = static_cast<float>(range[2]);
+  const std::optional<shading::WeightSettings> known = readWeightText(weight);
+  if (!known) header.refuse("pellucid:weight", weight);
+  info.weight = *known;
   return info;
 }
 

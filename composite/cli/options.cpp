@@ -7,8 +7,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "composite/cli/stochastic_flags.h"
+#include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/tiers.h"
+#include "gbuffer/weight_text.h"
 
 namespace pellucid::cli {
 namespace {
@@ -29,16 +31,6 @@ std::vector<double> parseNumbers(const std::string& text, char separator, std::s
   }
   throw UsageError(fmt::format("{}: found '{}', expected {}", flag, text, form));
 }
-
-struct NamedWeight {
-  const char* name;
-  int kind;
-};
-constexpr NamedWeight kWeights[] = {{"eq5", shading::PLD_WEIGHT_EQ5},     {"eq7", shading::PLD_WEIGHT_EQ7},
-                                    {"eq8", shading::PLD_WEIGHT_EQ8},     {"eq9", shading::PLD_WEIGHT_EQ9},
-                                    {"eq10", shading::PLD_WEIGHT_EQ10},   {"eq7z", shading::PLD_WEIGHT_EQ7Z},
-                                    {"eq8z", shading::PLD_WEIGHT_EQ8Z},   {"eq9z", shading::PLD_WEIGHT_EQ9Z},
-                                    {"eq10z", shading::PLD_WEIGHT_EQ10Z}, {"uniform", shading::PLD_WEIGHT_UNIFORM}};
 
 SubmissionOrder parseOrder(const std::string& text) {
   SubmissionOrder order;
@@ -114,9 +106,7 @@ void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--camera", camera, "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
   verb.add_option("--environment", environment,
                   "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");
-  verb.add_option("--set", overrides,
-                  "MATERIAL.key=value: thin, collimation, coverage, additive, lowResolution, castsShadow")
-      ->allow_extra_args(false);
+  verb.add_option("--set", overrides, "MATERIAL.key=value: " + gltf::setKeyNames())->allow_extra_args(false);
   verb.add_option("--lumens-per-watt", lumensPerWatt, "glTF lights are photometric, renders are not")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -159,22 +149,20 @@ void SceneFlags::applyTo(PassSettings& settings) const {
 }
 
 void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
-  const std::string names =
-      listsToo ? fmt::format("phenomenological, over, {}, {}", kStochasticNames, methodNames()) : "phenomenological";
+  const std::string names = listsToo ? allMethodNames() : "phenomenological";
   verb.add_option("--method", method, names)
       ->check([listsToo, names](const std::string& text) -> std::string {
-        if (text == "phenomenological" ||
-            (listsToo && (text == "over" || stochasticVariant(text) || chooseMethod(text))))
-          return "";
+        if (text == "phenomenological" || (listsToo && methodNamed(text))) return "";
         return fmt::format("--method: found '{}', expected {}", text, names);
       })
       ->capture_default_str();
-  verb.add_option("--precision", precision)
-      ->check(CLI::IsMember({"published", "float", "exact"}))
-      ->capture_default_str()
-      ->description(
-          "exact: the same bits for every order, chunk, tile and thread count; published: the papers' 112 bits a "
-          "pixel, normalisation and self-modulation, with their losses");
+  std::vector<std::string> tiers;
+  std::string promises;
+  for (const PrecisionTier& row : kTiers) {
+    tiers.emplace_back(row.name);
+    promises += fmt::format("{}{}: {}", promises.empty() ? "" : "; ", row.name, row.promise);
+  }
+  verb.add_option("--precision", precision, promises)->check(CLI::IsMember(tiers))->capture_default_str();
   addWeightTo(verb, listsToo);
 }
 
@@ -183,32 +171,25 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
   normalisationOption = verb.add_option("--normalisation", normalisation)
                             ->check(CLI::IsMember({"spectral", "published"}))
                             ->capture_default_str();
-  weightOption =
-      verb.add_option(
-              "--weight", weight,
-              takesAuto ? "eq5, eq7..eq10, eq7z..eq10z, power:K, uniform, or auto: fitted to the truth on probe pixels"
-                        : "eq5, eq7..eq10, eq7z..eq10z, power:K or uniform")
-          ->capture_default_str();
-  verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for eq5 and eq10");
+  weightOption = verb.add_option("--weight", weight,
+                                 weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
+                     ->capture_default_str();
+  verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for " + rangedWeights());
 }
 
 std::optional<ChosenMethod> MethodFlags::listMethod() const {
-  const std::optional<ChosenMethod> chosen = chooseMethod(method);
-  if ((chosen || stochasticVariant(method)) && precision != "float")
+  const Method& row = *methodNamed(method);
+  if ((isPublished() && !row.takesPublished) || (isExact() && !row.takesExact))
     throw UsageError(fmt::format("--precision: found {} with --method {}, expected phenomenological{}", precision,
                                  method, isExact() ? " or over" : ""));
-  if (isPublished() && isOver())
-    throw UsageError("--precision: found published with --method over, expected phenomenological");
-  if (stochasticVariant(method))
-    for (const CLI::Option* option : {weightOption, normalisationOption})
-      if (option && option->count() > 0)
-        throw UsageError(fmt::format("{}: --method {} does not weigh its layers", option->get_name(), method));
-  if (!chosen) return chosen;
-  if (!chosen->method->weighs && weightOption && weightOption->count() > 0)
+  // Of the sorted truth the flags are the fit's and the measured sums'.
+  const bool refuses = row.kind != MethodKind::sorted;
+  if (refuses && !row.weighs && weightOption && weightOption->count() > 0)
     throw UsageError(fmt::format("--weight: --method {} does not weigh its layers", method));
-  if (!chosen->method->normalises && normalisationOption && normalisationOption->count() > 0)
-    throw UsageError(fmt::format("--normalisation: --method {} has one of its own", method));
-  return chosen;
+  if (refuses && !row.normalises && normalisationOption && normalisationOption->count() > 0)
+    throw UsageError(fmt::format("--normalisation: --method {} {}", method,
+                                 row.weighs ? "has one of its own" : "does not weigh its layers"));
+  return chooseMethod(method);
 }
 
 void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
@@ -221,26 +202,9 @@ void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
   }
   settings.normalisation = isPublished() || normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED
                                                                          : shading::PLD_NORMALISE_SPECTRAL;
-  settings.weight.kind = -1;
-  for (const NamedWeight& named : kWeights)
-    if (weight == named.name) settings.weight.kind = named.kind;
-  if (weight.rfind("power:", 0) == 0) {
-    settings.weight.kind = shading::PLD_WEIGHT_POWER;
-    settings.weight.exponent =
-        static_cast<float>(parseNumbers(weight.substr(6), ' ', 1, "--weight", "power:K with a number K")[0]);
-    if (settings.weight.exponent < 0.0f)
-      throw UsageError(
-          fmt::format("--weight: found '{}', expected K >= 0: farther layers must not weigh more", weight));
-  }
-  if (isAuto()) {
-    if (!autoAllowed)
-      throw UsageError("--weight: found 'auto', expected a weight: this verb has no truth to fit it to");
-    settings.weight.kind = shading::PLD_WEIGHT_EQ5;  // until the fit
-  }
-  if (settings.weight.kind < 0)
-    throw UsageError(fmt::format(
-        "--weight: found '{}', expected eq5, eq7, eq8, eq9, eq10, eq7z, eq8z, eq9z, eq10z, power:K or uniform",
-        weight));
+  if (isAuto() && !autoAllowed)
+    throw UsageError("--weight: found 'auto', expected a weight: this verb has no truth to fit it to");
+  settings.weight = parseWeight(isAuto() ? "eq5" : weight, settings.weight);  // auto: until the fit
   double rangeNear = camera.rangeNear > 0 ? camera.rangeNear : 0.1;
   double rangeFar = camera.rangeFar > rangeNear ? camera.rangeFar : rangeNear * 1e4;
   if (!weightRange.empty()) std::tie(rangeNear, rangeFar) = parseRange(weightRange, "--weight-range");

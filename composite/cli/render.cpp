@@ -160,9 +160,10 @@ class ListPainter {
 
 // The flags that ask for this weight, with every bit of it.
 std::string weightFlags(const shading::WeightSettings& weight) {
-  const std::string text = weightText(weight), name = text.substr(0, text.find(' '));
-  if (weight.kind == shading::PLD_WEIGHT_POWER) return fmt::format("--weight power:{}", weight.exponent);
-  return fmt::format("--weight {} --weight-range {}:{}", name, weight.rangeNear, weight.rangeFar);
+  const DepthWeight* row = depthWeightOf(weight.kind);
+  const std::string range =
+      row && row->readsRange ? fmt::format(" --weight-range {}:{}", weight.rangeNear, weight.rangeFar) : "";
+  return "--weight " + weightName(weight) + range;
 }
 
 // One pass of samples drawn on the device. What they show of the background is looked up by the sums' scattering

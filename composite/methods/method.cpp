@@ -6,100 +6,91 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 
 #include "composite/denormals.h"
 
 namespace pellucid {
 namespace {
 
-constexpr int kFloat = 32;
 // Beyond this nothing shows; a cap keeps sums of absorbance meaningful. Münstermann et al. 2018 and its ports.
 constexpr double kAbsorbanceCap = 10.0;
 
-int bitsSum(int) {
-  return 6 * kFloat;
+bool orderFits(const MethodOrder& order, const std::string& text, int& value) {
+  const char* end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && next == end && order.most > 0 && value >= order.least && value <= order.most &&
+         (!order.even || value % 2 == 0);
 }
-int bitsAverage(int) {
-  return 7 * kFloat;
+
+bool variantFits(const char* variants, const std::string& text) {
+  std::istringstream all(variants ? variants : "");
+  for (std::string one; std::getline(all, one, '|');)
+    if (text == one) return true;
+  return false;
 }
-int bitsBlended(int) {
-  return 9 * kFloat;
+
+// "wavelet:N (N 0 to 6)", "stochastic[:basic|alpha|depth]", "over"
+std::string formOf(const Method& method) {
+  if (method.variants) return std::string(method.name) + "[:" + method.variants + "]";
+  if (method.order.most == 0) return method.name;
+  return std::string(method.name) + ":N (N " + std::to_string(method.order.least) + " to " +
+         std::to_string(method.order.most) + (method.order.even ? ", even)" : ")");
 }
-int bitsWeighted(int) {
-  return 20 * kFloat;
-}
-// RGBA16F and R16F, or the first alone.
-int bitsListing(int) {
-  return 5 * 16;
-}
-int bitsMonochrome(int) {
-  return 4 * 16;
-}
-int bitsFrontTail(int) {
-  return 27 * kFloat;
-}
-int bitsWavelet(int order) {
-  return (3 * (2 << order) + 2 + 9) * kFloat;
-}
-int bitsMoments(int order) {
-  return (3 * (order + 1) + 2 + 6) * kFloat;
-}
-int bitsMlab(int order) {
-  return 7 * order * kFloat;
+
+std::string namesOf(const std::vector<Method>& table) {
+  std::string names;
+  for (const Method& method : table) names += (names.empty() ? "" : ", ") + formOf(method);
+  return names;
 }
 
 }  // namespace
 
 const std::vector<Method>& methods() {
-  static const std::vector<Method> table{
-      {"sum", mixSum, 0, 0, 0, false, false, false, "double", 1, bitsSum, "WB13 eq. 3 (Meshkin 2007)"},
-      {"average", mixAverage, 0, 0, 0, false, false, false, "double", 1, bitsAverage,
-       "WB13 eq. 4 (Bavoil, Myers 2008)"},
-      {"blended", mixBlended, 0, 0, 0, false, false, false, "float", 1, bitsBlended, "WB13 eq. 5"},
-      {"weighted", mixWeighted, 0, 0, 0, false, true, true, "float", 1, bitsWeighted, "WB13 eq. 6"},
-      {"listing3", mixListing3, 0, 0, 0, false, true, false, "half", 1, bitsListing, "WB13 listing 3"},
-      {"listing4", mixListing4, 0, 0, 0, false, true, false, "half", 1, bitsListing,
-       "WB13 listing 4: one blend function"},
-      {"monochrome", mixMonochrome, 0, 0, 0, false, true, false, "half", 1, bitsMonochrome, "WB13: one target"},
-      {"unsorted", mixUnsorted, 0, 0, 0, false, false, false, "double", 1, bitsSum, "over in the order submitted"},
-      {"front+tail", mixFrontTail, 0, 0, 0, false, true, true, "float", 2, bitsFrontTail,
-       "exact nearest layer over eq. 6"},
-      {"wavelet", mixWavelet, 2, 0, 6, false, false, false, "double", 3, bitsWavelet,
-       "Aizenshtein, Smal, McGuire 2022"},
-      {"moments", mixMoments, 4, 4, 8, true, false, false, "double", 3, bitsMoments, "Münstermann et al. 2018"},
-      {"mlab", mixMlab, 4, 1, 64, false, false, false, "double", 1, bitsMlab, "Salvi, Vaidyanathan 2014"},
-  };
+  static const std::vector<Method> table = [] {
+    std::vector<Method> rows;
+    std::copy_if(allMethods().begin(), allMethods().end(), std::back_inserter(rows),
+                 [](const Method& method) { return method.mix != nullptr; });
+    return rows;
+  }();
   return table;
 }
 
-std::optional<ChosenMethod> chooseMethod(const std::string& text) {
+const Method* methodNamed(const std::string& text) {
   const std::size_t colon = text.find(':');
-  const std::string name = text.substr(0, colon);
-  for (const Method& method : methods()) {
-    if (name != method.name) continue;
-    ChosenMethod chosen{&method, method.orderDefault, name};
-    if (colon != std::string::npos) {
-      const char* end = text.data() + text.size();
-      const auto [next, error] = std::from_chars(text.data() + colon + 1, end, chosen.order);
-      if (error != std::errc() || next != end || method.orderMost == 0 || chosen.order < method.orderLeast ||
-          chosen.order > method.orderMost || (method.evenOrder && chosen.order % 2 != 0))
-        return std::nullopt;
-    }
-    if (method.orderMost > 0) chosen.name += ":" + std::to_string(chosen.order);
-    return chosen;
+  for (const Method& method : allMethods()) {
+    if (text.substr(0, colon) != method.name) continue;
+    int order = 0;
+    const bool fits = colon == std::string::npos || orderFits(method.order, text.substr(colon + 1), order) ||
+                      variantFits(method.variants, text.substr(colon + 1));
+    return fits ? &method : nullptr;
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+std::optional<ChosenMethod> chooseMethod(const std::string& text) {
+  const Method* method = methodNamed(text);
+  if (!method || !method->mix) return std::nullopt;
+  ChosenMethod chosen{method, method->order.usual, method->name};
+  const std::size_t colon = text.find(':');
+  if (colon != std::string::npos) orderFits(method->order, text.substr(colon + 1), chosen.order);
+  if (method->order.most > 0) chosen.name += ":" + std::to_string(chosen.order);
+  return chosen;
 }
 
 std::string methodNames() {
-  std::string names;
-  for (const Method& method : methods()) {
-    names += (names.empty() ? "" : ", ") + std::string(method.name);
-    if (method.orderMost > 0)
-      names += ":N (N " + std::to_string(method.orderLeast) + " to " + std::to_string(method.orderMost) +
-               (method.evenOrder ? ", even)" : ")");
-  }
-  return names;
+  return namesOf(methods());
+}
+
+std::string allMethodNames() {
+  return namesOf(allMethods());
+}
+
+std::string methodsHelp() {
+  std::string text;
+  for (const Method& method : allMethods()) text += formOf(method) + ": " + method.help + " (" + method.source + ")\n";
+  return text;
 }
 
 glm::dvec3 absorbanceOf(const glm::dvec3& opacity) {

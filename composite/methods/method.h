@@ -36,19 +36,46 @@ struct LayerMix {
 //   layers  at least one, in the order submitted, none solid
 using LayerMethod = LayerMix (*)(const std::vector<MethodLayer>& layers, const MethodChoice& choice);
 
-struct Method {
-  const char* name;
-  LayerMethod mix;
-  int orderDefault, orderLeast, orderMost;  // 0 where it has none
-  bool evenOrder;
-  bool weighs;             // honours --weight
-  bool normalises;         // honours --normalisation
-  const char* precision;   // of its sums: "half" (then one coverage for all channels), "float" or "double"
-  int passes;              // of geometry
-  int (*bits)(int order);  // of sums a pixel, float, coloured opacity
-  const char* source;      // where it is from
+// What paints a method's veil.
+enum class MethodKind {
+  planes,      // sums of the transparent pass, resolved
+  sorted,      // all fragments of a pixel, sorted and composited
+  listed,      // `mix`, from all fragments of a pixel
+  stochastic,  // random samples of a pixel, from lists or drawn on the device
 };
 
+// The number behind a method's name.
+struct MethodOrder {
+  const char* letter = "";
+  int usual = 0, least = 0, most = 0;  // most 0: there is none
+  bool even = false;
+};
+
+// One row: what asks for it and what it reads. The row is all that flags, help, plan and study know of a method.
+struct Method {
+  const char* name;
+  MethodKind kind;
+  const char* help;
+  const char* source;          // where it is from
+  const char* precision;       // of its sums: "half" (then one coverage for all channels), "float" or "double"
+  LayerMethod mix = nullptr;   // null where no function of one pixel's list is the method
+  int passes = 0;              // of geometry; 0: they depend on the shot
+  int (*bits)(int) = nullptr;  // of sums a pixel by order, float, coloured opacity; null: they depend on the shot
+  MethodOrder order = {};
+  const char* variants = nullptr;  // behind the name: "basic|alpha|depth"
+  // All that it keeps of a pixel are sums of one pass, so that planes of several passes add up to one picture.
+  bool isSum = false;
+  bool weighs = false;          // honours --weight, and --weight-range where the weight reads one
+  bool normalises = false;      // honours --normalisation
+  bool takesPublished = false;  // honours --precision published
+  bool takesExact = false;      // honours --precision exact
+  // Of every fragment of a pixel. Stochastic samples may be drawn on the device instead.
+  bool needsLists() const { return kind == MethodKind::sorted || kind == MethodKind::listed; }
+};
+
+// Every method that --method takes.
+const std::vector<Method>& allMethods();
+// Those that a function of one pixel's list is: rows with `mix`.
 const std::vector<Method>& methods();
 
 struct ChosenMethod {
@@ -56,10 +83,16 @@ struct ChosenMethod {
   int order = 0;
   std::string name;  // "wavelet:2"
 };
-// "weighted", "wavelet:3", "mlab" (its default order). Nothing when the name is unknown or the order out of range.
+// "weighted", "wavelet:3", "mlab" (its default order). Nothing when the name is unknown or the order out of range, and
+// for methods without `mix`.
 std::optional<ChosenMethod> chooseMethod(const std::string& text);
-// "sum, average, ..., wavelet:R, ..." for messages.
+// The row of any method by the text of --method: "over", "stochastic:alpha", "wavelet:3". Null when there is none.
+const Method* methodNamed(const std::string& text);
+// "sum, average, ..., wavelet:N (N 0 to 6), ..." of methods(), for messages.
 std::string methodNames();
+// "phenomenological, over, stochastic[:basic|alpha|depth], sum, ..." of allMethods().
+std::string allMethodNames();
+std::string methodsHelp();  // a line for every row
 
 // The layers of pixel i (row by row) that take part: in front of the solid, none solid themselves.
 void layersOf(const FragmentLists& lists, std::size_t i, float solidZ, std::vector<MethodLayer>& layers);
@@ -77,20 +110,10 @@ LayerMix mixByTransmittance(const std::vector<MethodLayer>& layers, const std::v
 glm::dvec3 absorbanceOf(const glm::dvec3& opacity);
 glm::dvec3 productOfPassed(const std::vector<MethodLayer>& layers);  // beta
 
-LayerMix mixSum(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixAverage(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixBlended(const std::vector<MethodLayer>&, const MethodChoice&);
+// Methods that others are made of; the table declares the rest.
 LayerMix mixWeighted(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixUnsorted(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixFrontTail(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixWavelet(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixMoments(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixListing3(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixListing4(const std::vector<MethodLayer>&, const MethodChoice&);
-LayerMix mixMonochrome(const std::vector<MethodLayer>&, const MethodChoice&);
 // The mean colour of WB13 listings 3 and 4, whose clamp keeps thin sums from blowing up and large ones from overflow.
 //   sum, weight  of w C and w alpha, >= 0
 glm::vec3 listingColour(const glm::vec3& sum, float weight);
-LayerMix mixMlab(const std::vector<MethodLayer>&, const MethodChoice&);
 
 }  // namespace pellucid

@@ -1,6 +1,5 @@
 #include "composite/study/fit_weight.h"
 
-#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -8,7 +7,7 @@
 #include <cmath>
 
 #include "composite/over.h"
-#include "gbuffer/accum.h"
+#include "gbuffer/weight_text.h"
 #include "shaders/probe.h"
 
 namespace pellucid {
@@ -82,6 +81,45 @@ struct WeightFitter {
   }
 };
 
+namespace {
+
+// As given, and over ranges that the probes' depths suggest.
+//   low, high  nearest and farthest layer, metres
+void tryRow(const DepthWeight& row, const shading::WeightSettings& given, float low, float high, WeightFitter& fitter) {
+  shading::WeightSettings weight = given;
+  weight.kind = row.kind;
+  fitter.attempt(weight);
+  if (!row.readsRange) return;
+  for (const float nearShare : {0.25f, 0.5f, 0.9f})
+    for (const float farShare : {1.1f, 4.0f, 100.0f}) {
+      weight.rangeNear = low * nearShare;
+      weight.rangeFar = high * farShare;
+      fitter.attempt(weight);
+    }
+}
+
+// Steps that are closer where the parameter is small, then closer still around the best of them.
+void tryParameters(const DepthWeight& row, const shading::WeightSettings& given, WeightFitter& fitter) {
+  shading::WeightSettings weight = given;
+  weight.kind = row.kind;
+  float best = 1.0f;
+  double least = INFINITY;
+  const auto tryOne = [&](float parameter) {
+    weight.exponent = parameter;
+    const double error = fitter.attempt(weight);
+    if (error < least) least = error, best = parameter;
+  };
+  for (const float part : {1.0f, 2.0f, 4.0f, 6.0f, 8.0f, 12.0f, 16.0f, 24.0f, 32.0f, 48.0f, 64.0f})
+    tryOne(std::max(row.least, part * row.fitMost / 64.0f));
+  for (float step = 0.25f; step > 0.01f; step *= 0.5f) {
+    const float centre = best;
+    tryOne(std::max(row.least, centre * (1.0f - step)));
+    tryOne(centre * (1.0f + step));
+  }
+}
+
+}  // namespace
+
 WeightFit fitWeight(const WeightProbes& probes, const shading::WeightSettings& given, int normalisation) {
   WeightFit fit;
   fit.weight = given;
@@ -92,37 +130,10 @@ WeightFit fitWeight(const WeightProbes& probes, const shading::WeightSettings& g
     low = std::min(low, fragment.z);
     high = std::max(high, fragment.z);
   }
-  for (int kind = shading::PLD_WEIGHT_EQ5; kind <= shading::PLD_WEIGHT_UNIFORM; ++kind) {
-    if (kind == shading::PLD_WEIGHT_POWER) continue;
-    shading::WeightSettings weight = given;
-    weight.kind = kind;
-    fitter.attempt(weight);
-    const bool ranged =
-        kind == shading::PLD_WEIGHT_EQ5 || kind == shading::PLD_WEIGHT_EQ10 || kind == shading::PLD_WEIGHT_EQ10Z;
-    if (!ranged) continue;
-    for (const float nearShare : {0.25f, 0.5f, 0.9f})
-      for (const float farShare : {1.1f, 4.0f, 100.0f}) {
-        weight.rangeNear = low * nearShare;
-        weight.rangeFar = high * farShare;
-        fitter.attempt(weight);
-      }
-  }
-  shading::WeightSettings power = given;
-  power.kind = shading::PLD_WEIGHT_POWER;
-  float best = 1.0f;
-  double least = INFINITY;
-  const auto tryPower = [&](float exponent) {
-    power.exponent = exponent;
-    const double error = fitter.attempt(power);
-    if (error < least) least = error, best = exponent;
-  };
-  for (const float exponent : {0.5f, 1.0f, 2.0f, 3.0f, 4.0f, 6.0f, 8.0f, 12.0f, 16.0f, 24.0f, 32.0f})
-    tryPower(exponent);
-  for (float step = 0.25f; step > 0.01f; step *= 0.5f) {
-    const float centre = best;
-    tryPower(centre * (1.0f - step));
-    tryPower(centre * (1.0f + step));
-  }
+  for (const DepthWeight& row : kDepthWeights)
+    if (row.fitted && !row.parameter) tryRow(row, given, low, high, fitter);
+  for (const DepthWeight& row : kDepthWeights)
+    if (row.fitted && row.parameter) tryParameters(row, given, fitter);
   std::stable_sort(fit.tried.begin(), fit.tried.end(),
                    [](const auto& a, const auto& b) { return a.second < b.second; });
   return fit;

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "engine_bridge/c/pass.h"
+#include "shaders/weights.h"
 
 namespace {
 
@@ -55,9 +56,12 @@ pld_status checkInfo(const pld_create_info& info) {
   struct {
     const char* name;
     int value, last;
-  } const choices[] = {{"method", info.method, PLD_METHOD_FRONT_TAIL}, {"tier", info.tier, PLD_TIER_EXACT},
-                       {"weight", info.weight, PLD_WEIGHT_BY_NONE},    {"depth", info.depth, PLD_DEPTH_LINEAR},
-                       {"clip", info.clip, PLD_CLIP_ZERO_TO_ONE},      {"rows", info.rows, PLD_ROWS_DOWN}};
+  } const choices[] = {{"method", info.method, PLD_METHOD_FRONT_TAIL},
+                       {"tier", info.tier, PLD_TIER_EXACT},
+                       {"weight", info.weight, static_cast<int>(pellucid::kDepthWeights.size()) - 1},
+                       {"depth", info.depth, PLD_DEPTH_LINEAR},
+                       {"clip", info.clip, PLD_CLIP_ZERO_TO_ONE},
+                       {"rows", info.rows, PLD_ROWS_DOWN}};
   for (const auto& choice : choices)
     if (choice.value < 0 || choice.value > choice.last) {
       std::snprintf(text, sizeof(text), "pld_create: %s: found %d, expected 0 to %d", choice.name, choice.value,
@@ -97,6 +101,16 @@ extern "C" {
 
 uint32_t pld_version(void) {
   return PLD_VERSION;
+}
+
+pld_status pld_weight_named(const char* name, pld_weight* weight) {
+  if (!name || !weight) return PLD_ERROR_ARGUMENT;
+  for (const pellucid::DepthWeight& row : pellucid::kDepthWeights)
+    if (std::strcmp(name, row.name) == 0) {
+      *weight = static_cast<pld_weight>(row.kind);
+      return PLD_OK;
+    }
+  return PLD_ERROR_ARGUMENT;
 }
 
 pld_status pld_create(const pld_create_info* info, pld_pass** pass) {

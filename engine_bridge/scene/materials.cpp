@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "engine_bridge/scene/set_keys.h"
+
 namespace pellucid::gltf {
 
 namespace {
@@ -137,9 +139,9 @@ struct MaterialReader {
       const JsonView value = ours->at(key.c_str());
       const SetResult result = setKey(material, key, value.scalarText());
       if (result == SetResult::badValue)
-        value.refuse(fmt::format("is {}; the keys are {}", value.scalarText(), kSetKeys));
+        value.refuse(fmt::format("is {}; the keys are {}", value.scalarText(), setKeyForms()));
       if (result == SetResult::unknownKey)
-        note(fmt::format("extras.pellucid has no key {}; the keys are {}", key, kSetKeys));
+        note(fmt::format("extras.pellucid has no key {}; the keys are {}", key, setKeyForms()));
     }
   }
 };

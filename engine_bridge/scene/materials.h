@@ -29,9 +29,4 @@ Material defaultMaterial();
 // Throws UsageError naming the materials, the keys or the values there are.
 void applyOverrides(const std::vector<std::string>& overrides, std::vector<Material>& materials);
 
-// One key of extras.pellucid or --set. False when there is no such key, or no such value for it.
-enum class SetResult { done, unknownKey, badValue };
-SetResult setKey(Material& material, const std::string& key, const std::string& value);
-extern const char* const kSetKeys;  // for messages: the keys and what they take
-
 }  // namespace pellucid::gltf

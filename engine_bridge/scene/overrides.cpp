@@ -1,30 +1,15 @@
-// extras.pellucid and --set share their keys.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 #include "engine_bridge/scene/materials.h"
+#include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::gltf {
 
 namespace {
-
-std::optional<bool> parseBool(const std::string& text) {
-  if (text == "true" || text == "on" || text == "1") return true;
-  if (text == "false" || text == "off" || text == "0") return false;
-  return std::nullopt;
-}
-
-std::optional<float> parseWithin(const std::string& text, float least, float most) {
-  float value = 0.0f;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, problem] = std::from_chars(text.data(), end, value);
-  if (problem != std::errc() || stopped != end || !(value >= least && value <= most)) return std::nullopt;
-  return value;
-}
 
 std::string materialNames(const std::vector<Material>& materials) {
   constexpr std::size_t kMost = 40;
@@ -40,36 +25,6 @@ std::string materialNames(const std::vector<Material>& materials) {
 }
 
 }  // namespace
-
-const char* const kSetKeys =
-    "collimation and coverage (0 to 1), additive, lowResolution, castsShadow, thin and billboard (true or false), "
-    "softness (metres) and pointScale (0 to 1e6), phase (-0.98 to 0.98)";
-
-SetResult setKey(Material& material, const std::string& key, const std::string& value) {
-  const bool isLength = key == "softness" || key == "pointScale", isPhase = key == "phase";
-  const bool isNumber = key == "collimation" || key == "coverage" || isLength || isPhase;
-  const bool isFlag =
-      key == "additive" || key == "lowResolution" || key == "castsShadow" || key == "thin" || key == "billboard";
-  if (!isNumber && !isFlag) return SetResult::unknownKey;
-  const std::optional<float> unit = isNumber ? parseWithin(value, isPhase ? -0.98f : 0.0f,
-                                                           isLength  ? 1e6f
-                                                           : isPhase ? 0.98f
-                                                                     : 1.0f)
-                                             : std::nullopt;
-  const std::optional<bool> flag = isFlag ? parseBool(value) : std::nullopt;
-  if (!unit && !flag) return SetResult::badValue;
-  if (key == "collimation") material.collimation = unit;
-  if (key == "coverage") material.coverage = unit;
-  if (key == "additive") material.additive = *flag;
-  if (key == "lowResolution") material.lowResolution = *flag;
-  if (key == "castsShadow") material.castsShadow = *flag;
-  if (key == "thin") material.thin = flag;
-  if (key == "billboard") material.billboard = *flag;
-  if (key == "softness") material.softness = *unit;
-  if (key == "pointScale") material.pointScale = *unit;
-  if (isPhase) material.phase = *unit;
-  return SetResult::done;
-}
 
 void applyOverrides(const std::vector<std::string>& overrides, std::vector<Material>& materials) {
   for (const std::string& text : overrides) {
@@ -87,11 +42,11 @@ void applyOverrides(const std::vector<std::string>& overrides, std::vector<Mater
       found = true;
       const SetResult result = setKey(material, key, text.substr(equals + 1));
       if (result == SetResult::unknownKey) {
-        throw UsageError(fmt::format("--set {}: unknown key {}; the keys are {}", text, key, kSetKeys));
+        throw UsageError(fmt::format("--set {}: unknown key {}; the keys are {}", text, key, setKeyForms()));
       }
       if (result == SetResult::badValue) {
         throw UsageError(
-            fmt::format("--set {}: found the value {}; the keys are {}", text, text.substr(equals + 1), kSetKeys));
+            fmt::format("--set {}: found the value {}; the keys are {}", text, text.substr(equals + 1), setKeyForms()));
       }
     }
     if (!found) {

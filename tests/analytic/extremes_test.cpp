@@ -9,6 +9,7 @@
 #include "composite/fold_published.h"
 #include "composite/over.h"
 #include "composite/resolve.h"
+#include "shaders/weights.h"
 #include "tests/support/layers.h"
 
 namespace pellucid {
@@ -21,10 +22,6 @@ constexpr float kCoverages[] = {0.0f, 1e-8f, 0.3f, 1.0f - 1e-7f, 1.0f};
 const glm::vec3 kTransmissions[] = {glm::vec3(0), glm::vec3(1), glm::vec3(1, 0, 0.5f), glm::vec3(1.0f - 1e-7f)};
 constexpr float kRadiances[] = {0.0f, 1e-30f, 1.0f, 65505.0f, 1e6f};
 constexpr float kDepths[] = {1e-6f, 0.01f, 3.0f, 1e4f, 1e9f};
-constexpr int kWeights[] = {shading::PLD_WEIGHT_EQ5,   shading::PLD_WEIGHT_EQ7,    shading::PLD_WEIGHT_EQ8,
-                            shading::PLD_WEIGHT_EQ9,   shading::PLD_WEIGHT_EQ10,   shading::PLD_WEIGHT_EQ7Z,
-                            shading::PLD_WEIGHT_EQ8Z,  shading::PLD_WEIGHT_EQ9Z,   shading::PLD_WEIGHT_EQ10Z,
-                            shading::PLD_WEIGHT_POWER, shading::PLD_WEIGHT_UNIFORM};
 enum class Fold { floats, exact, published };
 constexpr Fold kFolds[] = {Fold::floats, Fold::exact, Fold::published};
 
@@ -76,7 +73,8 @@ TEST(Extremes, OneLayerOfEveryKindIsFiniteAndRight) {
     for (const glm::vec3& transmission : kTransmissions)
       for (const float radiance : kRadiances)
         for (const float z : kDepths)
-          for (const int kind : kWeights) {
+          for (const DepthWeight& row : kDepthWeights) {
+            const int kind = row.kind;
             const FragmentLists lists = onePixel({fragmentOf(coverage, transmission, radiance, z)});
             if (shading::isSolid(coverage, transmission)) continue;  // the solid pass's
             const glm::dvec3 truth = over(sorted(lists), background);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "shaders/weights.h"
 #include "tests/support/layers.h"
 
 namespace pellucid {
@@ -11,11 +12,6 @@ namespace {
 using namespace test;
 using reference::Layer;
 using reference::Rgb;
-
-constexpr int kWeightKinds[] = {shading::PLD_WEIGHT_EQ5,   shading::PLD_WEIGHT_EQ7,    shading::PLD_WEIGHT_EQ8,
-                                shading::PLD_WEIGHT_EQ9,   shading::PLD_WEIGHT_EQ10,   shading::PLD_WEIGHT_EQ7Z,
-                                shading::PLD_WEIGHT_EQ8Z,  shading::PLD_WEIGHT_EQ9Z,   shading::PLD_WEIGHT_EQ10Z,
-                                shading::PLD_WEIGHT_POWER, shading::PLD_WEIGHT_UNIFORM};
 
 double edgy(Random& random) {  // 0 and 1 among them
   const std::uint32_t k = random.below(8);
@@ -36,7 +32,8 @@ Layer randomLayer(Random& random, bool emission) {
 
 TEST(Resolve, OneSpectralLayerIsOver) {
   double worst = 0;
-  for (const int kind : kWeightKinds) {
+  for (const DepthWeight& row : kDepthWeights) {
+    const int kind = row.kind;
     Random random(17);
     for (int i = 0; i < 10000; ++i) {
       const Layer layer = randomLayer(random, random.below(2) == 0);
@@ -150,7 +147,8 @@ TEST(Resolve, AdditiveLightBehindSmokeIsAttenuated) {
   smoke.coverage = .8;
   smoke.reflected = {.5, .5, .5};
   smoke.z = 2;
-  for (const int kind : kWeightKinds) {
+  for (const DepthWeight& row : kDepthWeights) {
+    const int kind = row.kind;
     const float lit = resolveLayers({fire, smoke}, weightOf(kind), shading::PLD_NORMALISE_SPECTRAL, glm::vec3(0.0f)).r;
     const double truth = reference::sortedOver({fire, smoke}, {0, 0, 0})[0];
     EXPECT_GE(lit, truth - 1e-5) << kind;  // the light is never taken for farther than everything
@@ -200,7 +198,8 @@ TEST(Weight, DocumentedValues) {
 }
 
 TEST(Weight, FallsWithDepthAndStaysFinite) {
-  for (const int kind : kWeightKinds) {
+  for (const DepthWeight& row : kDepthWeights) {
+    const int kind = row.kind;
     float last = std::numeric_limits<float>::infinity();
     for (double exponent = -6; exponent <= 9; exponent += 0.125) {
       const float w = shading::depthWeight(weightOf(kind), static_cast<float>(std::pow(10.0, exponent)));

@@ -6,6 +6,7 @@
 
 #include "engine_bridge/gl/permutation.h"
 #include "engine_bridge/gl/program.h"
+#include "shaders/weights.h"
 #include "tests/gl/builder.h"
 
 namespace pellucid::test {
@@ -100,7 +101,7 @@ TEST(Permutations, EveryOutputCompilesAndLinks) {
       const Defines surface = gl::surfaceDefines(material, false, frame);
       for (const gl::Output output : {gl::Output::count, gl::Output::list, gl::Output::solid, gl::Output::published})
         build(gl::outputDefines(output, frame, 0, 0), surface);
-      for (int weight = shading::PLD_WEIGHT_EQ5; weight <= shading::PLD_WEIGHT_UNIFORM; ++weight)
+      for (int weight = 0; depthWeightOf(weight); ++weight)
         for (const int normalisation : {shading::PLD_NORMALISE_SPECTRAL, shading::PLD_NORMALISE_PUBLISHED})
           build(gl::outputDefines(gl::Output::sums, frame, weight, normalisation), surface);
     }

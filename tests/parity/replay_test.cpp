@@ -7,6 +7,7 @@
 #include "composite/denormals.h"
 #include "composite/fold.h"
 #include "engine_bridge/gl/transparent_pass.h"
+#include "shaders/weights.h"
 #include "tests/support/random.h"
 
 namespace pellucid::test {
@@ -119,7 +120,7 @@ void expectParity(bool denormals) {
   GlContext context;
   const FlushDenormals flush;
   std::size_t fragments = 0;
-  for (int kind = shading::PLD_WEIGHT_EQ5; kind <= shading::PLD_WEIGHT_UNIFORM; ++kind)
+  for (int kind = 0; depthWeightOf(kind); ++kind)
     for (const int normalisation : {shading::PLD_NORMALISE_SPECTRAL, shading::PLD_NORMALISE_PUBLISHED}) {
       const FragmentLists lists = randomLists(static_cast<std::uint64_t>(kind * 2 + normalisation), denormals);
       const shading::WeightSettings weight{kind, 0.1f, 1000.0f, 2.5f};
@@ -136,7 +137,7 @@ void expectParity(bool denormals) {
       fragments += lists.fragments.size();
     }
   std::printf("%zu fragments over %d pixels a run, %d weights x 2 normalisations, every plane: same bits\n",
-              fragments / 22, kWidth * kHeight, 11);
+              fragments / (2 * kDepthWeights.size()), kWidth * kHeight, static_cast<int>(kDepthWeights.size()));
 }
 
 TEST(Accumulate, ReplayedFragmentsMatchGlBitForBit) {

@@ -9,6 +9,7 @@
 #include "composite/study/fit_weight.h"
 #include "composite/study/study.h"
 #include "gbuffer/accum.h"
+#include "shaders/weights.h"
 #include "tests/support/exr_shots.h"
 #include "tests/support/layers.h"
 #include "tests/support/program.h"
@@ -47,7 +48,7 @@ TEST(WeightAuto, NoListedWeightIsMoreThanTwoPercentBetter) {
       return sum / (3.0 * static_cast<double>(veil.light.size()));
     };
     double best = 1e9;
-    for (int kind = shading::PLD_WEIGHT_EQ5; kind <= shading::PLD_WEIGHT_UNIFORM; ++kind)
+    for (int kind = 0; depthWeightOf(kind); ++kind)
       best = std::min(best, errorOf(weightOf(kind)));
     const double fitted = errorOf(fit.weight);
     printf("[ figure ] set %c: auto %s, mean error %.5f on all pixels, best listed weight %.5f\n", set,

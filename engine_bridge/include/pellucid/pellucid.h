@@ -325,6 +325,9 @@ typedef PLD_ENUM(pld_shadow_text){
 
 /* The version of the library, as PLD_VERSION. */
 PLD_API uint32_t pld_version(void);
+/* The weight of a name that `pellucid composite --weight` takes, its parameter left out: "eq7z", "power". Weights that
+   have come after this header have a value, and no constant. PLD_ERROR_ARGUMENT for a name that is none. */
+PLD_API pld_status pld_weight_named(const char* name, pld_weight* weight);
 
 /* Order of calls: create, fix if wanted, resize, then frames of { begin, draws, end } for every stage, solids, front,
    layers, rims, low, and resolve. resize and destroy lie between frames. A frame may be given up: pld_end(), then begin
