@@ -16,14 +16,15 @@ pld_status guarded(pld_pass* pass, const char* call, F f) noexcept {
   if (pass->busy.test_and_set(std::memory_order_acquire)) return PLD_ERROR_BUSY;
   pld_status status = PLD_OK;
   try {
-    pass->message[0] = '\0';
-    status = pass->isCurrent()
+    pass->device.message[0] = '\0';
+    status = pass->device.isCurrent()
                  ? f()
-                 : pass->fail(PLD_ERROR_CONTEXT, "%s: the context of pld_create() is not current on this thread", call);
+                 : pass->device.fail(PLD_ERROR_CONTEXT, "%s: the context of pld_create() is not current on this thread",
+                                     call);
   } catch (const std::bad_alloc&) {
-    status = pass->fail(PLD_ERROR_MEMORY, "%s: out of memory", call);
+    status = pass->device.fail(PLD_ERROR_MEMORY, "%s: out of memory", call);
   } catch (const std::exception& mistake) {
-    status = pass->fail(PLD_ERROR_INTERNAL, "%s: %s", call, mistake.what());
+    status = pass->device.fail(PLD_ERROR_INTERNAL, "%s: %s", call, mistake.what());
   } catch (...) {
     status = PLD_ERROR_INTERNAL;
   }
@@ -80,8 +81,8 @@ pld_status checkInfo(const pld_create_info& info) {
 // Of 0.1 it ended before occlusion_texture.
 pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, pld_frame& whole) {
   if (frame.struct_size != offsetof(pld_frame, occlusion_texture) && frame.struct_size != sizeof(pld_frame))
-    return pass->fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call, frame.struct_size,
-                      sizeof(pld_frame));
+    return pass->device.fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call,
+                             frame.struct_size, sizeof(pld_frame));
   std::memcpy(&whole, &frame, frame.struct_size);
   return PLD_OK;
 }
@@ -89,8 +90,8 @@ pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, 
 // Of 0.3 it ended before shadow_face.
 pld_status wholeTarget(pld_pass* pass, const pld_target& target, pld_target& whole) {
   if (target.struct_size != offsetof(pld_target, shadow_face) && target.struct_size != sizeof(pld_target))
-    return pass->fail(PLD_ERROR_VERSION, "pld_resolve: target.struct_size: found %u, expected %zu", target.struct_size,
-                      sizeof(pld_target));
+    return pass->device.fail(PLD_ERROR_VERSION, "pld_resolve: target.struct_size: found %u, expected %zu",
+                             target.struct_size, sizeof(pld_target));
   std::memcpy(&whole, &target, target.struct_size);
   return PLD_OK;
 }
@@ -147,7 +148,7 @@ pld_status pld_resize(pld_pass* pass, int32_t width, int32_t height) {
 
 pld_status pld_fix(pld_pass* pass, const pld_frame* frame, uint32_t fields) {
   return guarded(pass, "pld_fix", [&] {
-    if (!frame) return pass->fail(PLD_ERROR_ARGUMENT, "pld_fix: frame is null");
+    if (!frame) return pass->device.fail(PLD_ERROR_ARGUMENT, "pld_fix: frame is null");
     pld_frame whole{};
     const pld_status status = wholeFrame(pass, "pld_fix", *frame, whole);
     return status == PLD_OK ? pass->fix(whole, fields) : status;
@@ -156,7 +157,7 @@ pld_status pld_fix(pld_pass* pass, const pld_frame* frame, uint32_t fields) {
 
 pld_status pld_begin(pld_pass* pass, pld_stage stage, const pld_frame* frame) {
   return guarded(pass, "pld_begin", [&] {
-    if (!frame) return pass->fail(PLD_ERROR_ARGUMENT, "pld_begin: frame is null");
+    if (!frame) return pass->device.fail(PLD_ERROR_ARGUMENT, "pld_begin: frame is null");
     pld_frame whole{};
     const pld_status status = wholeFrame(pass, "pld_begin", *frame, whole);
     return status == PLD_OK ? pass->begin(stage, whole) : status;
@@ -169,7 +170,7 @@ pld_status pld_end(pld_pass* pass) {
 
 pld_status pld_resolve(pld_pass* pass, const pld_target* target) {
   return guarded(pass, "pld_resolve", [&] {
-    if (!target) return pass->fail(PLD_ERROR_ARGUMENT, "pld_resolve: target is null");
+    if (!target) return pass->device.fail(PLD_ERROR_ARGUMENT, "pld_resolve: target is null");
     pld_target whole{};
     const pld_status status = wholeTarget(pass, *target, whole);
     return status == PLD_OK ? pass->resolve(whole) : status;
@@ -178,18 +179,19 @@ pld_status pld_resolve(pld_pass* pass, const pld_target* target) {
 
 pld_status pld_query(pld_pass* pass, pld_value what, uint64_t* value) {
   return guarded(pass, "pld_query", [&] {
-    return value ? pass->query(what, *value) : pass->fail(PLD_ERROR_ARGUMENT, "pld_query: value is null");
+    return value ? pass->query(what, *value) : pass->device.fail(PLD_ERROR_ARGUMENT, "pld_query: value is null");
   });
 }
 
 pld_status pld_glsl(pld_pass* pass, pld_stage stage, int32_t version, const char** text) {
   return guarded(pass, "pld_glsl", [&] {
-    return text ? pass->seam(stage, version, *text) : pass->fail(PLD_ERROR_ARGUMENT, "pld_glsl: text is null");
+    return text ? pass->texts().seam(stage, version, *text)
+                : pass->device.fail(PLD_ERROR_ARGUMENT, "pld_glsl: text is null");
   });
 }
 
 pld_status pld_connect(pld_pass* pass, uint32_t program) {
-  return guarded(pass, "pld_connect", [&] { return pass->connect(program); });
+  return guarded(pass, "pld_connect", [&] { return pass->texts().connect(program); });
 }
 
 pld_status pld_shadow_resize(pld_pass* pass, const pld_shadow_info* info) {
@@ -198,7 +200,7 @@ pld_status pld_shadow_resize(pld_pass* pass, const pld_shadow_info* info) {
 
 pld_status pld_shadow_begin(pld_pass* pass, const pld_shadow_view* view) {
   return guarded(pass, "pld_shadow_begin", [&] {
-    return view ? pass->shadowBegin(*view) : pass->fail(PLD_ERROR_ARGUMENT, "pld_shadow_begin: view is null");
+    return view ? pass->shadowBegin(*view) : pass->device.fail(PLD_ERROR_ARGUMENT, "pld_shadow_begin: view is null");
   });
 }
 
@@ -208,8 +210,8 @@ pld_status pld_shadow_end(pld_pass* pass) {
 
 pld_status pld_shadow_glsl(pld_pass* pass, pld_shadow_text which, int32_t version, const char** text) {
   return guarded(pass, "pld_shadow_glsl", [&] {
-    return text ? pass->shadowText(which, version, *text)
-                : pass->fail(PLD_ERROR_ARGUMENT, "pld_shadow_glsl: text is null");
+    return text ? pass->texts().shadows(which, version, *text)
+                : pass->device.fail(PLD_ERROR_ARGUMENT, "pld_shadow_glsl: text is null");
   });
 }
 
@@ -226,7 +228,7 @@ pld_status pld_destroy(pld_pass** pass) {
 }
 
 const char* pld_message(const pld_pass* pass) {
-  return pass ? pass->message : "";
+  return pass ? pass->device.message : "";
 }
 
 const char* pld_status_name(pld_status status) {

@@ -129,6 +129,37 @@ TEST(Planted, TwoTypesOfOneNameAreFound) {
       0u);
 }
 
+TEST(Planted, CirclesAreFound) {
+  const auto include = [](const char* path) { return std::string("#include \"room/") + path + "\"\n"; };
+  const auto circles = [](const std::vector<SourceFile>& files) { return circlesIn("room", files).size(); };
+  // Straight, by way of a source, over three parts.
+  EXPECT_EQ(circles({{"room/a.h", include("b.h")}, {"room/b.h", include("a.h")}}), 1u);
+  EXPECT_EQ(circles({{"room/a.h", include("b.h")}, {"room/b.h", ""}, {"room/b.cpp", include("b.h") + include("a.h")}}),
+            1u);
+  EXPECT_EQ(circles({{"room/a.h", include("b.h")}, {"room/b.cpp", include("c.h")}, {"room/c.h", include("a.h")}}), 1u);
+  // A class whose members are defined in another part.
+  const std::string type = "struct Pass {\n  void end();\n};\n", member = "void Pass::end() {\n}\n";
+  EXPECT_EQ(circles({{"room/a.h", type}, {"room/a_end.cpp", include("a.h") + member}}), 1u);
+  EXPECT_EQ(circles({{"room/a.h", type}, {"room/a.cpp", include("a.h") + member}}), 0u);
+  // Two parts of one, and a header that its own source includes.
+  EXPECT_EQ(circles({{"room/a.h", ""}, {"room/b.h", include("a.h")}, {"room/c.cpp", include("a.h") + include("b.h")}}),
+            0u);
+  // Elsewhere.
+  EXPECT_EQ(circles({{"rooms/a.h", include("b.h")}, {"rooms/b.h", include("a.h")}}), 0u);
+}
+
+TEST(Planted, LongFunctionsAreFound) {
+  const auto longer = [](const std::string& text) { return longFunctions({"room/a.cpp", text}, 4).size(); };
+  EXPECT_EQ(longer("void f() {\n  a;\n  b;\n}\n"), 0u);
+  EXPECT_EQ(longer("void f() {\n  a;\n  b;\n  c;\n}\n"), 1u);
+  EXPECT_EQ(longer("bool A::f(int x,\n          int y) const {\n  a;\n  b;\n  c;\n}\n"), 1u);
+  EXPECT_EQ(longer("class A {\n  void f() const {\n    a;\n    b;\n    c;\n  }\n};\n"), 1u);
+  EXPECT_EQ(longer("void f() {\n  for (a)\n    if (b) {\n    }\n}\n"), 1u);
+  EXPECT_EQ(longer("void f() {\n  if (a) {\n  }\n}\nint a;\nint b;\nint c;\n  }\n"), 0u);
+  EXPECT_EQ(longer("namespace a {\nint b;\nint c;\nint d;\n}  // namespace a\n"), 0u);
+  EXPECT_EQ(longer("const int x[] = {\n  1,\n  2,\n  3,\n};\n"), 0u);
+}
+
 TEST(Planted, AMissingOrEmptyReadmeIsFound) {
   const std::filesystem::path top = std::filesystem::path(PELLUCID_BINARY_DIR) / "test-files" / "planted-readme";
   std::filesystem::remove_all(top);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -172,6 +173,95 @@ Violations definedTwice(const std::vector<SourceFile>& files) {
     }
   }
   return violations;
+}
+
+namespace {
+
+// A part's name: the path without its ending.
+std::string partOf(const std::string& path) {
+  return path.substr(0, path.rfind('.'));
+}
+
+// Which parts each part needs.
+std::map<std::string, Names> needsIn(const std::string& folder, const std::vector<SourceFile>& files) {
+  static const std::regex type(R"(^ *(?:struct|class) (\w+)(?: final)?(?: : [^{;]*)? ?\{)"),
+      member(R"(^[\w:<>,&*~ ]*?\b(\w+)::~?\w+\()");
+  std::map<std::string, Names> needs;
+  std::map<std::string, std::string> homes;  // of types, by the header that defines them
+  for (const SourceFile& file : files) {
+    if (!isBelow(file.path, folder)) continue;
+    Names& part = needs[partOf(file.path)];
+    for (const Include& include : includesOf(file.text))
+      if (const std::string path = resolved(file, include.name); isBelow(path, folder)) part.insert(partOf(path));
+    part.erase(partOf(file.path));
+    for (const std::string& line : linesOf(file.text))
+      if (std::smatch match; file.path.ends_with(".h") && std::regex_search(line, match, type))
+        homes[match[1]] = partOf(file.path);
+  }
+  for (const SourceFile& file : files) {
+    if (!isBelow(file.path, folder) || file.path.ends_with(".h")) continue;
+    for (const std::string& line : linesOf(withoutComments(file.text)))
+      if (std::smatch match; std::regex_search(line, match, member))
+        if (const auto home = homes.find(match[1]); home != homes.end() && home->second != partOf(file.path))
+          needs[home->second].insert(partOf(file.path));
+  }
+  return needs;
+}
+
+}  // namespace
+
+Violations circlesIn(const std::string& folder, const std::vector<SourceFile>& files) {
+  const std::map<std::string, Names> needs = needsIn(folder, files);
+  Violations found;
+  Names done;
+  std::vector<std::string> way;
+  const std::function<void(const std::string&)> follow = [&](const std::string& part) {
+    if (const auto first = std::find(way.begin(), way.end(), part); first != way.end()) {
+      std::string circle;
+      for (auto step = first; step != way.end(); ++step) circle += *step + " needs ";
+      found.push_back(circle + part);
+      return;
+    }
+    if (!done.insert(part).second) return;
+    way.push_back(part);
+    if (const auto next = needs.find(part); next != needs.end())
+      for (const std::string& one : next->second) follow(one);
+    way.pop_back();
+  };
+  for (const auto& [part, others] : needs) follow(part);
+  return found;
+}
+
+Violations longFunctions(const SourceFile& file, int most) {
+  static const std::regex type(R"(^(?:struct|class|union) )"), other(R"(^(?:[#}/]|namespace|extern|enum|using))");
+  const std::vector<std::string> lines = linesOf(file.text);
+  Violations found;
+  bool inType = false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t indent = lines[i].find_first_not_of(' ');
+    if (indent == 0 && lines[i][0] == '}') inType = false;
+    if (indent != (inType ? 2 : 0)) continue;
+    const std::string text = lines[i].substr(indent);
+    if (std::regex_search(text, other)) continue;
+    // A signature or a type may take several lines; what ends in a semicolon is none.
+    std::size_t opening = i;
+    while (opening < lines.size() && !lines[opening].ends_with('{') && !lines[opening].ends_with(';')) ++opening;
+    if (opening == lines.size() || !lines[opening].ends_with('{')) continue;
+    if (std::regex_search(text, type) && indent == 0) {
+      inType = true;
+      i = opening;
+      continue;
+    }
+    const std::string closing = std::string(indent, ' ') + "}";
+    std::size_t end = opening + 1;
+    while (end < lines.size() && lines[end].rfind(closing, 0) != 0) ++end;
+    const int length = static_cast<int>(end - opening) + 1;
+    if (text.find('(') != std::string::npos && length > most)
+      found.push_back(at(file, static_cast<int>(i) + 1) + "a function of " + std::to_string(length) +
+                      " lines; expected at most " + std::to_string(most));
+    i = end;
+  }
+  return found;
 }
 
 Violations roomsWithoutReadme(const std::string& top) {

@@ -22,6 +22,13 @@ Violations againstSharedText(const SourceFile& file);
 // Types of headers that share a name and a namespace: a program that links both uses the wrong one, and no compiler
 // says so.
 Violations definedTwice(const std::vector<SourceFile>& files);
+// Circles among the parts of a folder. A part is a header and the source of its name. It needs what either includes
+// and, where a class of its header has members that are defined in another part's source, that part too: what includes
+// the header reaches them.
+Violations circlesIn(const std::string& folder, const std::vector<SourceFile>& files);
+// Functions of more lines than `most`, from the line of their opening brace to that of their closing one, by the layout
+// that clang-format gives them.
+Violations longFunctions(const SourceFile& file, int most);
 // Rooms of the tree below `top` that have no README.md.
 Violations roomsWithoutReadme(const std::string& top);
 

@@ -1,0 +1,77 @@
+// The host's GL context as one pass uses it: GL functions, words to the host, saved state, and what every draw of the
+// library's own needs. All parts of a pass work over one Device.
+#pragma once
+#include "engine_bridge/c/permutation.h"
+#include "engine_bridge/c/programs.h"
+#include "engine_bridge/c/saved_state.h"
+#include "engine_bridge/c/timers.h"
+
+namespace pellucid::c {
+
+class Device {
+ public:
+  GlFunctions gl;
+  pld_create_info info{};   // as pld_create() was given it
+  Permutation permutation;  // of info; pld_fix() adds constants to it
+  Timers timers;
+  char message[512] = {};  // of the last call that failed
+
+  // Takes `create` over and loads GL. Nothing else of this class works before.
+  pld_status load(const pld_create_info& create);
+  void create();
+  void destroy();
+  bool isCurrent() const;
+
+  // Says why, to the message and to the log.
+  [[gnu::format(printf, 3, 4)]] pld_status fail(pld_status status, const char* format, ...);
+  void say(pld_log_level level, const char* text) const;
+
+  // GL errors that the host has left are reported to the log and cleared.
+  void reportPendingErrors(const char* call) const;
+  // Clears the errors of a call: GL_OUT_OF_MEMORY where it is among them, else the first, else GL_NO_ERROR.
+  GLenum takeErrors() const;
+
+  // Do nothing under PLD_FLAG_HOST_RESTORES.
+  void save(Units units, int uniformBinding, Storage storage = {});
+  void restore() const;
+  void restoreForDraws() const;
+  void restoreActiveUnit() const;
+  bool saves() const { return !(info.flags & PLD_FLAG_HOST_RESTORES); }
+
+  void pushGroup(const char* name) const;
+  void popGroup() const;
+
+  void bind(GLuint unit, GLuint texture) const;
+  void bindSampler(GLuint unit) const;  // nearest texels, none compared
+  void use(const Program& program) const;
+  void drawEverywhere() const;  // over the whole viewport, with the program in use
+  // Level 0 alone; adds what it takes to `bytes`. The host's unpack buffer is unbound: see Room.
+  GLuint makeTexture(GLenum format, int width, int height, int bits, uint64_t& bytes) const;
+  void releaseTexture(GLuint& name) const;
+  void makeFrame(GLuint& frame) const;
+  void releaseFrame(GLuint& frame) const;
+  void attach(GLuint frame, GLenum attachment, GLuint texture) const;
+  bool isComplete() const;                              // the bound draw framebuffer
+  void allowColours(GLuint first, bool written) const;  // draw buffers from `first` on
+
+ private:
+  SavedState saved_;
+  GLuint vertexArray_ = 0, sampler_ = 0, own_ = 0;
+  char label_[64] = {};
+};
+
+// The state in which textures and buffers are made; what the host had comes back at its end.
+class Room {
+ public:
+  Room(Device& device, Storage storage);
+  ~Room();
+  Room(const Room&) = delete;
+  Room& operator=(const Room&) = delete;
+
+ private:
+  Device& device_;
+  SavedState state_;
+  GLint unpack_ = 0;
+};
+
+}  // namespace pellucid::c
