@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "composite/cli/budget.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/tiers.h"
@@ -118,7 +119,8 @@ void SceneFlags::addTo(CLI::App& verb) {
       ->capture_default_str();
   verb.add_option("--order", order, "Submission order: file, reverse or shuffle:SEED")->capture_default_str();
   verb.add_option("--budget", budget,
-                  "Geometry resident at once, in bytes (64M, 2G): chunks, their GL buffers and pages of the files. "
+                  "Geometry resident at once, in bytes (64M, 2G; at least 1M): chunks, their GL buffers and pages of "
+                  "the files. "
                   "--shadows exact decodes all triangles besides")
       ->capture_default_str();
   verb.add_option("--device", device, "EGL device by number, see inspect --devices");
@@ -136,7 +138,7 @@ SceneOptions SceneFlags::options(double metresPerUnit, bool traced) const {
 std::size_t SceneFlags::pageBytes() const {
   // More would only keep what has been drawn.
   constexpr std::size_t kShare = 4, kMost = std::size_t{16} << 20;
-  return std::clamp<std::size_t>(parseBytes(budget, "--budget") / kShare, 1, kMost);
+  return std::min(std::max(parseBytes(budget, "--budget"), kLeastBudget) / kShare, kMost);
 }
 
 void SceneFlags::applyTo(PassSettings& settings) const {
@@ -145,7 +147,7 @@ void SceneFlags::applyTo(PassSettings& settings) const {
                                                   : TextureFilter::nearest;
   settings.mask = mask == "smooth" ? MaskEdge::smooth : MaskEdge::hard;
   settings.order = parseOrder(order);
-  settings.budgetBytes = std::max<std::size_t>(parseBytes(budget, "--budget") - pageBytes(), 1);
+  settings.budgetBytes = parseBudget(budget) - pageBytes();
 }
 
 void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
