@@ -1,7 +1,8 @@
 # What goes to an install prefix: the program, the C library with its header, and the rooms as C++ libraries.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
-set(rooms pellucid_options pellucid_shaders pellucid_gbuffer pellucid_scene pellucid_gl pellucid_embree pellucid_composite)
+set(rooms pellucid_options pellucid_shaders pellucid_gbuffer pellucid_scene pellucid_gl pellucid_embree
+  pellucid_composite pellucid_pipeline)
 set(rooms_include ${CMAKE_INSTALL_INCLUDEDIR}/pellucid-rooms)
 
 install(TARGETS pellucid RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

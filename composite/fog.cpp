@@ -1,6 +1,7 @@
 #include "composite/fog.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "composite/denormals.h"
+#include "composite/fold_published.h"
 
 namespace pellucid {
 namespace shading {
@@ -131,31 +133,68 @@ void marchRuns(const Marcher& marcher, const shading::FogSpan& span, const std::
   runs.end(first, behind);
 }
 
+// One ray's fog to a pixel's sums.
+void addRay(const Marcher& marcher, const shading::FogSpan& span, OitPlanes& planes, int x, int y,
+            PublishedClamps& clamps) {
+  const Fog& fog = marcher.fog;
+  const shading::FogSums sums = marcher.text->marchFog(fog.medium, span, planes.info.weight, fog.order);
+  if (!(sums.share > 0.0f)) return;
+  const shading::OitSums own = shading::fogOitSums(sums, fog.order);
+  if (planes.published()) {
+    blendPublished(publishedLayer(own), planes, x, y, clamps);
+    return;
+  }
+  const shading::OitTargets added = shading::packSums(own);
+  planes.radiance.at(x, y) += added.radiance;
+  planes.weight.at(x, y) += added.weight;
+  planes.opacity.at(x, y) += added.opacity;
+  planes.depth.at(x, y) += added.depth;
+  planes.light.at(x, y) += added.light;
+  planes.frontZ.at(x, y) = std::min(planes.frontZ.at(x, y), shading::fogZ(sums));
+}
+
+// Depths of a deep picture's samples, so that no run reaches past one.
+void cutBySamples(const DeepOpaque& deep, int x, int y, float behind, std::vector<float>& cuts) {
+  const std::size_t pixel =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(deep.data.width()) + static_cast<std::size_t>(x);
+  for (std::uint64_t k = deep.offsets[pixel]; k < deep.offsets[pixel + 1]; ++k)
+    if (deep.samples[k].z < behind) cuts.push_back(deep.samples[k].z);
+}
+
 }  // namespace
 
-void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, OitPlanes& planes) {
+void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, OitPlanes& planes, PublishedClamps* clamps) {
   const Marcher marcher(fog, gbuffer, planes.data, sample);
+  tbb::enumerable_thread_specific<PublishedClamps> own;
   tbb::parallel_for(tbb::blocked_range<int>(0, planes.data.height()), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;
+    PublishedClamps& counted = own.local();
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < planes.data.width(); ++x) {
         const float z = std::min(gbuffer.viewZ.at(x, y), planes.solid.at(x, y).a);
-        const shading::FogSums sums =
-            marcher.text->marchFog(fog.medium, marcher.span(x, y, z), planes.info.weight, fog.order);
-        if (!(sums.share > 0.0f)) continue;
-        const shading::OitSums own = shading::fogOitSums(sums, fog.order);
-        const shading::OitTargets added = shading::packSums(own);
-        planes.radiance.at(x, y) += added.radiance;
-        planes.weight.at(x, y) += added.weight;
-        planes.opacity.at(x, y) += added.opacity;
-        planes.depth.at(x, y) += added.depth;
-        planes.light.at(x, y) += added.light;
-        planes.frontZ.at(x, y) = std::min(planes.frontZ.at(x, y), shading::fogZ(sums));
+        addRay(marcher, marcher.span(x, y, z), planes, x, y, counted);
       }
   });
+  if (clamps)
+    for (const PublishedClamps& each : own) *clamps += each;
 }
 
-FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists) {
+void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const HeldOutRow& row, OitPlanes& planes,
+            PublishedClamps* clamps) {
+  const Marcher marcher(fog, gbuffer, gbuffer.data, sample);
+  const FlushDenormals flush;
+  PublishedClamps counted;
+  for (int i = 0; i < planes.data.width(); ++i) {
+    const auto entry = static_cast<std::size_t>(i);
+    const glm::ivec2 at = row.pixel[entry] - glm::ivec2(gbuffer.data.x0, gbuffer.data.y0);
+    const float z = std::min({gbuffer.viewZ.at(at.x, at.y), row.z[entry], planes.solid[entry].a});
+    addRay(marcher, marcher.span(at.x, at.y, z), planes, i, 0, counted);
+  }
+  if (clamps) *clamps += counted;
+}
+
+FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
+                      const DeepOpaque* deep) {
   const Marcher marcher(fog, gbuffer, lists.window, sample);
   const int width = lists.window.width(), height = lists.window.height();
   const int left = lists.window.x0 - gbuffer.data.x0, top = lists.window.y0 - gbuffer.data.y0;
@@ -172,6 +211,7 @@ FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample,
       cuts.clear();
       for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
         cuts.push_back(lists.fragments[i].z);
+      if (deep) cutBySamples(*deep, left + x, top + y, behind, cuts);
       std::sort(cuts.begin(), cuts.end());
       const std::size_t before = made.size();
       marchRuns(marcher, marcher.span(x, y, behind), cuts, behind, made);

@@ -1,20 +1,29 @@
 // Fog marched on the CPU: into the sums of a picture, or as runs between the surfaces of fragment lists. MODEL section
 // 11
 #pragma once
+#include "composite/deep/deep_opaque.h"
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
 #include "gbuffer/medium.h"
+#include "gbuffer/published.h"
 
 namespace pellucid {
 
-// Adds the fog before each pixel's opaque surface and solid to its sums.
+// Adds the fog before each pixel's opaque surface and solid to its sums, of any tier.
 //   sample  where in the pixel
-void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, OitPlanes& planes);
+//   clamps  of the published tier; may be null for the others
+void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, OitPlanes& planes,
+            PublishedClamps* clamps = nullptr);
+// The same for the row of a deep picture: each entry has the fog before its own sample and solid.
+void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const HeldOutRow& row, OitPlanes& planes,
+            PublishedClamps* clamps = nullptr);
 
 // The same for lists: what lies between two fragments that follow one another in depth, composited front to back, is
 // one more fragment. Sorted compositing of the result is the ordered march; the order of `lists` does not matter.
-FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists);
+//   deep  a deep picture, of gbuffer's window, whose samples cut the fog too; null for a flat one
+FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
+                      const DeepOpaque* deep = nullptr);
 
 // Light and transmission of the fog alone on one pixel's ray, front to back: for tests and studies.
 struct FogRay {

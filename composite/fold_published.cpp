@@ -20,7 +20,36 @@ void blend(const shading::PublishedTargets& layer, PublishedPixel& pixel) {
     pixel.delta[c] = static_cast<std::int8_t>(std::clamp(pixel.delta[c] + shading::snormOf(layer.delta[c]), -127, 127));
 }
 
+// The targets that planes were decoded from.
+PublishedPixel pixelOf(const OitPlanes& planes, int x, int y) {
+  PublishedPixel pixel;
+  pixel.radiance = glm::vec4(glm::vec3(planes.radiance.at(x, y)), planes.weight.at(x, y).r);
+  for (int c = 0; c < 3; ++c) pixel.beta[c] = static_cast<std::uint8_t>(shading::unormOf(planes.depth.at(x, y)[c]));
+  if (!planes.scatters()) return pixel;
+  const float kUnit = shading::PLD_SCATTER_UNIT;
+  const glm::vec4 refraction = planes.refraction.at(x, y);
+  pixel.beta[3] = static_cast<std::uint8_t>(shading::unormOf(refraction.w / (kUnit * kUnit)));
+  for (int c = 0; c < 2; ++c) pixel.delta[c] = static_cast<std::int8_t>(shading::snormOf(refraction[c] / kUnit));
+  return pixel;
+}
+
 }  // namespace
+
+shading::PublishedTargets publishedLayer(const shading::OitSums& sums) {
+  shading::Scatter still;
+  still.offset = glm::vec2(0.0f);
+  still.variance = 0.0f;
+  const glm::vec3 opacity = shading::netOpacityOf(sums.depth, shading::transmittanceOf(sums.depth));
+  // What only adds light has no place in these targets.
+  return shading::publishedTargets(sums.numerator, shading::meanOf(sums.denominator), opacity, still);
+}
+
+void blendPublished(const shading::PublishedTargets& layer, OitPlanes& planes, int x, int y, PublishedClamps& clamps) {
+  PublishedPixel pixel = pixelOf(planes, x, y);
+  clamps.written += static_cast<std::uint64_t>(layer.clamped);
+  blend(layer, pixel);
+  storePublished(pixel, planes, x, y, clamps);
+}
 
 void foldPublished(const FragmentLists& lists, const shading::WeightSettings& weight, OitPlanes& planes,
                    PublishedClamps& clamps) {

@@ -1,14 +1,16 @@
 #include "composite/low_resolution.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "composite/denormals.h"
-#include "shaders/low_resolution.h"
+#include "composite/fold_published.h"
 
 namespace pellucid {
 namespace {
@@ -42,10 +44,9 @@ struct Upsampled {
 
 class Upsampler {
  public:
-  Upsampler(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes)
+  Upsampler(const OitPlanes& low, const LowView& view, glm::dvec2 sample)
       : low_(low),
         view_(view),
-        planes_(planes),
         sample_(static_cast<float>(sample.x), static_cast<float>(sample.y)),
         texels_(low.data.width(), low.data.height()) {
     eachRow(texels_.height(), [this](int y) {
@@ -56,14 +57,17 @@ class Upsampler {
     markNear();
   }
 
-  void addTo(int x, int y) const {
-    if (!near_.at(x / view_.factor, y / view_.factor)) return;
+  // Nothing where no texel reaches.
+  std::optional<UpsampledLayer> at(int x, int y) const {
+    if (!near_.at(x / view_.factor, y / view_.factor)) return std::nullopt;
     const Upsampled up = around(x, y);
-    const shading::LowLayer layer = shading::lowLayerOf(up.sums);
+    UpsampledLayer layer;
+    layer.low = shading::lowLayerOf(up.sums);
+    layer.nearestZ = up.sums.nearestZ;
     // What only bends or spreads counts too, or nobody would look where to.
-    const bool bends = low_.scatters() && (up.refraction.z > 0.0f || up.refraction.w > 0.0f);
-    if (layer.shows || bends) add(layer, up.sums.nearestZ, x, y);
-    if (low_.scatters()) addScatter(up, x, y);
+    layer.bends = low_.scatters() && (up.refraction.z > 0.0f || up.refraction.w > 0.0f);
+    if (low_.scatters()) setScatter(up, layer);
+    return layer;
   }
 
  private:
@@ -118,29 +122,19 @@ class Upsampler {
     if (share > 0.0f) up.diffuseZ = std::min(up.diffuseZ, low_.diffuseZ.at(i, j));
   }
 
-  void add(const shading::LowLayer& layer, float nearestZ, int x, int y) const {
-    const shading::OitTargets added = shading::packSums(shading::lowLayerSums(layer, planes_.info.normalisation));
-    planes_.radiance.at(x, y) += added.radiance;
-    planes_.weight.at(x, y) += added.weight;
-    planes_.opacity.at(x, y) += added.opacity;
-    planes_.depth.at(x, y) += added.depth;
-    planes_.light.at(x, y) += added.light;
-    planes_.frontZ.at(x, y) = std::min(planes_.frontZ.at(x, y), nearestZ);
-  }
-
   // Offsets and spreads of the low view are in texels.
-  void addScatter(const Upsampled& up, int x, int y) const {
+  void setScatter(const Upsampled& up, UpsampledLayer& layer) const {
+    if (!(up.sums.share > 0.0f)) return;
     const auto factor = static_cast<float>(view_.factor);
     const glm::vec4 mean = up.refraction / up.sums.share;
-    planes_.refraction.at(x, y) += glm::vec4(factor * mean.x, factor * mean.y, mean.z, factor * factor * mean.w);
-    planes_.light.at(x, y).a += up.refractionZ / up.sums.share;
-    if (low_.disperses()) planes_.dispersion.at(x, y) += (factor / up.sums.share) * up.dispersion;
-    if (mean.w > 0.0f) planes_.diffuseZ.at(x, y) = std::min(planes_.diffuseZ.at(x, y), up.diffuseZ);
+    layer.refraction = glm::vec4(factor * mean.x, factor * mean.y, mean.z, factor * factor * mean.w);
+    layer.refractionZ = up.refractionZ / up.sums.share;
+    if (low_.disperses()) layer.dispersion = (factor / up.sums.share) * up.dispersion;
+    layer.diffuseZ = mean.w > 0.0f ? up.diffuseZ : INFINITY;
   }
 
   const OitPlanes& low_;
   const LowView& view_;
-  OitPlanes& planes_;
   glm::vec2 sample_;
   Image<shading::LowTexel> texels_;
   Image<std::uint8_t> near_;
@@ -171,13 +165,162 @@ LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const C
   return view;
 }
 
-void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes) {
-  if (low.scatters()) addScatterPlanes(planes);
-  if (low.disperses()) addDispersionPlane(planes);
-  const Upsampler upsampler(low, view, sample, planes);
-  eachRow(planes.data.height(), [&](int y) {
-    for (int x = 0; x < planes.data.width(); ++x) upsampler.addTo(x, y);
+void upsample(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
+              const std::function<void(int, int, const UpsampledLayer&)>& each) {
+  const Upsampler upsampler(low, view, sample);
+  eachRow(view.opaqueZ.height(), [&](int y) {
+    for (int x = 0; x < view.opaqueZ.width(); ++x)
+      if (const std::optional<UpsampledLayer> layer = upsampler.at(x, y)) each(x, y, *layer);
   });
+}
+
+namespace {
+
+void addLayer(const UpsampledLayer& layer, OitPlanes& planes, int x, int y) {
+  const shading::OitTargets added = shading::packSums(shading::lowLayerSums(layer.low, planes.info.normalisation));
+  planes.radiance.at(x, y) += added.radiance;
+  planes.weight.at(x, y) += added.weight;
+  planes.opacity.at(x, y) += added.opacity;
+  planes.depth.at(x, y) += added.depth;
+  planes.light.at(x, y) += added.light;
+  planes.frontZ.at(x, y) = std::min(planes.frontZ.at(x, y), layer.nearestZ);
+}
+
+void addLayerScatter(const UpsampledLayer& layer, OitPlanes& planes, int x, int y) {
+  planes.refraction.at(x, y) += layer.refraction;
+  planes.light.at(x, y).a += layer.refractionZ;
+  if (planes.disperses()) planes.dispersion.at(x, y) += layer.dispersion;
+  planes.diffuseZ.at(x, y) = std::min(planes.diffuseZ.at(x, y), layer.diffuseZ);
+}
+
+// Mean offset of a layer, float pixels.
+glm::vec2 offsetOf(const UpsampledLayer& layer) {
+  return layer.refraction.z > 0.0f ? glm::vec2(layer.refraction) / layer.refraction.z : glm::vec2(0.0f);
+}
+
+shading::PublishedTargets publishedOf(const UpsampledLayer& layer) {
+  shading::Scatter scatter;
+  scatter.offset = offsetOf(layer);
+  scatter.variance = layer.refraction.w;
+  const glm::vec3 opacity = glm::vec3(1.0f) - layer.low.layer.transmission;
+  return shading::publishedTargets(layer.low.weight * layer.low.layer.radiance,
+                                   layer.low.weight * shading::meanOf(opacity), opacity, scatter);
+}
+
+}  // namespace
+
+void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes,
+                      PublishedClamps* clamps) {
+  if (low.scatters()) addScatterPlanes(planes);
+  if (planes.published()) {
+    tbb::enumerable_thread_specific<PublishedClamps> own;
+    upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
+      if (layer.isThere()) blendPublished(publishedOf(layer), planes, x, y, own.local());
+    });
+    if (clamps)
+      for (const PublishedClamps& each : own) *clamps += each;
+    return;
+  }
+  if (low.disperses()) addDispersionPlane(planes);
+  upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
+    if (layer.isThere()) addLayer(layer, planes, x, y);
+    if (low.scatters()) addLayerScatter(layer, planes, x, y);
+  });
+}
+
+OitPlanes planesOfVeil(const Veil& veil, const Image<float>& meanZ, const LowView& view, const OitPlanes* scatter) {
+  OitPlanes planes = emptyPlanes(view.gbuffer.display, view.gbuffer.data);
+  planes.info.weight.kind = shading::PLD_WEIGHT_UNIFORM;
+  if (scatter) {
+    addScatterPlanes(planes);
+    planes.refraction = scatter->refraction;
+    planes.diffuseZ = scatter->diffuseZ;
+    if (scatter->disperses()) {
+      addDispersionPlane(planes);
+      planes.dispersion = scatter->dispersion;
+    }
+  }
+  for (std::size_t i = 0; i < veil.touched.size(); ++i) {
+    if (!veil.touched[i]) continue;
+    shading::Layer layer;
+    layer.radiance = veil.light[i];
+    layer.coverage = 1.0f;
+    layer.transmission = veil.transmission[i];
+    layer.z = meanZ[i];
+    const shading::OitTargets targets =
+        shading::packSums(shading::weighedSums(layer, 1.0f, 1.0f, shading::PLD_NORMALISE_SPECTRAL));
+    planes.radiance[i] = targets.radiance;
+    planes.weight[i] = targets.weight;
+    planes.opacity[i] = targets.opacity;
+    planes.depth[i] = targets.depth;
+    planes.light[i] = targets.light;
+    if (scatter) planes.light[i].a = scatter->light[i].a;
+    planes.frontZ[i] = veil.frontZ[i];
+  }
+  return planes;
+}
+
+namespace {
+
+constexpr std::uint32_t kLowIdentity = 0x6c6f7721u;
+
+Fragment fragmentOf(const UpsampledLayer& layer) {
+  Fragment fragment{};
+  fragment.radiance = layer.low.layer.radiance;
+  fragment.coverage = layer.low.layer.coverage;
+  fragment.transmission = layer.low.layer.transmission;
+  fragment.z = layer.low.shows ? layer.low.layer.z : layer.nearestZ;
+  fragment.offset = offsetOf(layer);
+  fragment.variance = layer.refraction.w;
+  fragment.identity = kLowIdentity;
+  // What hides all is still a layer here, not the pixel's solid.
+  if (shading::isSolid(fragment.coverage, fragment.transmission)) fragment.coverage = std::nextafter(1.0f, 0.0f);
+  return fragment;
+}
+
+bool isThere(const Fragment& fragment) {
+  return fragment.identity == kLowIdentity;
+}
+
+}  // namespace
+
+LowResolutionFragments::LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
+                                               const Window& data)
+    : data_(data), fragments_(data.width(), data.height(), Fragment{}), scatters_(low.scatters()) {
+  if (low.disperses()) dispersion_ = Image<glm::vec4>(data.width(), data.height(), glm::vec4(0.0f));
+  upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
+    if (!layer.isThere()) return;
+    fragments_.at(x, y) = fragmentOf(layer);
+    if (low.disperses() && layer.refraction.z > 0.0f) dispersion_.at(x, y) = layer.dispersion / layer.refraction.z;
+  });
+}
+
+FragmentLists LowResolutionFragments::among(const FragmentLists& lists) const {
+  FragmentLists result;
+  result.window = lists.window;
+  result.solid = lists.solid;
+  result.offsets.assign(1, 0);
+  const bool disperses = lists.disperses() || !dispersion_.empty();
+  std::size_t pixel = 0;
+  for (int y = lists.window.y0; y < lists.window.y1; ++y)
+    for (int x = lists.window.x0; x < lists.window.x1; ++x, ++pixel) {
+      const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
+                 end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
+      result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
+      if (lists.disperses())
+        result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
+                                 lists.dispersion.begin() + end);
+      if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
+      const Fragment& own = fragments_.at(x - data_.x0, y - data_.y0);
+      if (isThere(own) && own.z <= lists.solid[pixel].a) {
+        result.fragments.push_back(own);
+        if (disperses)
+          result.dispersion.push_back(dispersion_.empty() ? glm::vec4(0.0f)
+                                                          : dispersion_.at(x - data_.x0, y - data_.y0));
+      }
+      result.offsets.push_back(result.fragments.size());
+    }
+  return result;
 }
 
 }  // namespace pellucid

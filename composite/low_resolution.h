@@ -1,10 +1,16 @@
 // Layers drawn at a half, a quarter or an eighth of the resolution, and how they enter the sums of full resolution.
 // WB13 section 3.4.2, MODEL section 7
 #pragma once
+#include <functional>
 #include <glm/glm.hpp>
+#include <limits>
 
+#include "composite/veil.h"
 #include "gbuffer/accum.h"
+#include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/published.h"
+#include "shaders/low_resolution.h"
 
 namespace pellucid {
 
@@ -22,9 +28,49 @@ struct LowView {
 //   factor  pixels per texel, >= 1
 LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor);
 
-// Adds the low-resolution sums to those of full resolution, as one layer per pixel.
-//   low     accumulated over view.gbuffer and view.camera, with the weight and normalisation of `planes`
+// What texels become in one pixel: a single layer.
+struct UpsampledLayer {
+  shading::LowLayer low;
+  bool bends = false;          // it refracts or diffuses
+  float nearestZ = 0.0f;       // of its layers, planar metres
+  glm::vec4 refraction{0.0f};  // as OitPlanes::refraction holds them, float pixels of full resolution
+  glm::vec4 dispersion{0.0f};  // as OitPlanes::dispersion
+  float refractionZ = 0.0f, diffuseZ = std::numeric_limits<float>::infinity();
+  bool isThere() const { return low.shows || bends; }
+};
+
+// Brings sums of a low view to full resolution, pixel by pixel. Calls `each` for every pixel that holds something, row
+// by row in parallel; x and y count from the corner of the data window.
+//   low     accumulated over view.gbuffer and view.camera
 //   sample  where in pixels and texels both were sampled
-void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes);
+void upsample(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
+              const std::function<void(int x, int y, const UpsampledLayer& layer)>& each);
+
+// Adds the low-resolution sums to those of full resolution, as one layer per pixel.
+//   low     with the weight of `planes`, in float or exact; of the normalisation of `planes` unless they are published
+//   clamps  of the published tier; may be null for the others
+void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes,
+                      PublishedClamps* clamps = nullptr);
+
+// Sums of layers that are composited already, a layer for each touched pixel, for upsample().
+//   veil     of the low view; solids are in it
+//   meanZ    planar metres, where touched
+//   scatter  what refracts and diffuses in it, or null
+OitPlanes planesOfVeil(const Veil& veil, const Image<float>& meanZ, const LowView& view, const OitPlanes* scatter);
+
+// The upsampled layers of a whole picture as fragments, for lists. Empty where there is none.
+class LowResolutionFragments {
+ public:
+  LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample, const Window& data);
+  // Adds them to lists of a window inside of the data window; those behind a pixel's solid are left out.
+  FragmentLists among(const FragmentLists& lists) const;
+  bool scatters() const { return scatters_; }
+
+ private:
+  Window data_;
+  Image<Fragment> fragments_;  // coverage 0 and no radiance where there is none
+  Image<glm::vec4> dispersion_;
+  bool scatters_ = false;
+};
 
 }  // namespace pellucid

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "composite/denormals.h"
+#include "composite/methods/method.h"
 #include "shaders/picture.h"
 
 namespace pellucid {
@@ -16,7 +17,29 @@ namespace {
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 const glm::vec4 kNoSolid(0.0f, 0.0f, 0.0f, kNothing);
 
+// WB13 eqs. 3 and 4 from sums without a weight; a channel that is all but clear adds light and hides nothing there.
+shading::Resolved byFormula(const shading::OitSums& sums, SumFormula formula) {
+  const glm::dvec3 light = glm::dvec3(sums.numerator) + glm::dvec3(sums.light), opacity(sums.opacity);
+  const LayerMix mix =
+      formula == SumFormula::sum ? sumOf(light, opacity) : averageOf(light, opacity, static_cast<double>(sums.count));
+  shading::Resolved resolved;
+  resolved.transparent = glm::vec3(mix.light);
+  resolved.transmission = glm::vec3(mix.transmission);
+  return resolved;
+}
+
+shading::Resolved resolvedOf(const OitPlanes& planes, const shading::OitSums& sums, const ResolveSettings& settings) {
+  if (planes.published())
+    return shading::resolvePublished(sums.numerator, sums.denominator.r, sums.depth, settings.selfModulation);
+  if (settings.formula != SumFormula::mean && sums.count > 0.0f) return byFormula(sums, settings.formula);
+  return shading::resolveSums(sums, settings.selfModulation);
+}
+
 }  // namespace
+
+SumFormula formulaOf(const std::string& method) {
+  return method == "sum" ? SumFormula::sum : method == "average" ? SumFormula::average : SumFormula::mean;
+}
 
 Veil resolve(const OitPlanes& planes, const ResolveSettings& settings) {
   const int width = planes.data.width(), height = planes.data.height();
@@ -29,9 +52,7 @@ Veil resolve(const OitPlanes& planes, const ResolveSettings& settings) {
         const glm::vec4 solid = planes.solid.at(x, y);
         const bool hasSolid = std::isfinite(solid.a);
         if (sums.count == 0.0f && !hasSolid) continue;
-        shading::Resolved resolved = planes.published() ? shading::resolvePublished(sums.numerator, sums.denominator.r,
-                                                                                    sums.depth, settings.selfModulation)
-                                                        : shading::resolveSums(sums, settings.selfModulation);
+        shading::Resolved resolved = resolvedOf(planes, sums, settings);
         if (hasSolid) {
           resolved.transparent = shading::overBackground(resolved, glm::vec3(solid));
           resolved.transmission = glm::vec3(0.0f);

@@ -1,6 +1,7 @@
 // Sums to a veil (shaders/shared/resolve.glsl), and a veil over a background to the picture.
 #pragma once
 #include <glm/glm.hpp>
+#include <string>
 
 #include "composite/gather.h"
 #include "composite/veil.h"
@@ -10,8 +11,14 @@
 
 namespace pellucid {
 
+// How a pixel's sums become a colour: the model's weighted mean; or WB13 eqs. 3 and 4, of sums without a weight.
+enum class SumFormula { mean, sum, average };
+// By the method that planes name in their header.
+SumFormula formulaOf(const std::string& method);
+
 struct ResolveSettings {
   bool selfModulation = false;  // PT17 eq. 14; a heuristic for the published normalisation
+  SumFormula formula = SumFormula::mean;
 };
 
 Veil resolve(const OitPlanes& planes, const ResolveSettings& settings);

@@ -42,6 +42,7 @@ struct DensityGrid {
 
 struct Box {
   glm::dvec3 low{0.0}, high{0.0};
+  bool operator==(const Box&) const = default;
 };
 
 // In the world's metres, y up.
@@ -56,6 +57,7 @@ struct MediumSettings {
   int order = shading::PLD_FOG_ORDERED;
   std::optional<Box> box;
   std::shared_ptr<const DensityGrid> grid;  // wins over the box
+  bool operator==(const MediumSettings&) const = default;
 };
 
 // What of each light reaches the fog: visibility at texels, [0,1].

@@ -1,5 +1,3 @@
-#include <spdlog/sinks/stdout_sinks.h>
-
 #include <cstdio>
 #include <new>
 
@@ -13,11 +11,6 @@
 #endif
 
 namespace pellucid::cli {
-
-void setUpMessages() {
-  if (!spdlog::get("pellucid")) spdlog::set_default_logger(spdlog::stderr_logger_mt("pellucid"));
-  spdlog::set_pattern("pellucid: %v");
-}
 
 int run(int argc, const char* const* argv) {
   setUpMessages();

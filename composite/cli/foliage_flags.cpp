@@ -1,9 +1,5 @@
 #include "composite/cli/foliage_flags.h"
 
-#include "composite/occluders.h"
-#include "composite/rims.h"
-#include "gbuffer/errors.h"
-
 namespace pellucid::cli {
 
 void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
@@ -31,35 +27,18 @@ void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
                    ->check(CLI::PositiveNumber);
 }
 
-void FoliageFlags::applyTo(PassSettings& settings, TransparentPass* pass, const GBuffer& gbuffer, const Camera& camera,
-                           Stages& stages) const {
-  if (occlusion == "off") {
-    for (const CLI::Option* option : details)
-      if (option && option->count() > 0)
-        throw UsageError(option->get_name() + ": found it with --occlusion off, expected inferred or solid");
-    return;
-  }
-  if (occlusion == "solid" && details[0] && details[0]->count() > 0)
-    throw UsageError("--occlusion-inference: found it with --occlusion solid, expected inferred");
-  if (isApart() && details[0] && details[0]->count() > 0)
-    throw UsageError("--occlusion-inference: found it with --occlusion apart, expected it of resolve");
-  settings.occlusion.rims = occlusion == "inferred";
-  settings.occlusion.form =
-      inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE;
-  settings.occlusion.directShare = static_cast<float>(direct);
-  if (!pass || !pass->wantsOccluders(settings)) return;
-  const Image<float> solidZ = stages.time("depth of leaves", [&] { return pass->solidDepth(settings); });
-  OccluderSettings how;
-  how.fromFile = source == "auto";
-  how.screen.radius = radius;
-  std::size_t pixels = 0;
-  settings.occlusion.occluders = stages.time("occlusion of leaves", [&] {
-    return std::make_shared<OccluderPlanes>(
-        occludersOf(gbuffer, camera, nearestSolids(gbuffer, solidZ), how, nullptr, pixels));
-  });
-  if (pixels > 0)
-    spdlog::info("leaves: occlusion of {} pixels from depth alone{}", pixels,
-                 gbuffer.occlusion.empty() || !how.fromFile ? "" : ", where leaves stand that the picture lacks");
+void FoliageFlags::into(Request& request) const {
+  FoliageRequest& asked = request.foliage;
+  asked.rule = occlusion == "off"     ? FoliageRule::off
+               : occlusion == "solid" ? FoliageRule::solid
+               : occlusion == "apart" ? FoliageRule::apart
+                                      : FoliageRule::inferred;
+  const auto given = [&](int i) { return details[i] && details[i]->count() > 0; };
+  if (given(0))
+    asked.form = inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE;
+  if (given(1)) asked.directShare = direct;
+  if (given(2)) asked.radius = radius;
+  if (given(3)) asked.fromFile = source == "auto";
 }
 
 void RimFlags::addTo(CLI::App& verb) {
@@ -79,29 +58,14 @@ void RimFlags::addTo(CLI::App& verb) {
                ->check(CLI::PositiveNumber)};
 }
 
-void RimFlags::applyTo(const RimPlanes& rims, const GBuffer& gbuffer, OitPlanes& planes) const {
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    if (given[i]->count() == 0) continue;
-    if (rims.empty())
-      throw UsageError(given[i]->get_name() +
-                       ": the planes carry no rims apart, expected those of accumulate --occlusion apart");
-    if (i > 0 && occlusion == "off")
-      throw UsageError(given[i]->get_name() + ": found it with --occlusion off, expected inferred");
-  }
-  if (rims.empty() || occlusion == "off") return;
-  Image<float> solidZ(planes.solid.width(), planes.solid.height());
-  for (std::size_t i = 0; i < solidZ.size(); ++i) solidZ[i] = planes.solid[i].a;
-  OccluderSettings how;
-  how.fromFile = source == "auto";
-  how.screen.radius = radius;
-  std::size_t pixels = 0;
-  const OccluderPlanes occluders =
-      occludersOf(gbuffer, planes.camera, nearestSolids(gbuffer, solidZ), how, nullptr, pixels);
-  const std::size_t found = occludeRims(
-      rims, occluders, inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE,
-      planes);
-  spdlog::info("leaves: rims of {} pixels occluded{}", found,
-               pixels > 0 ? fmt::format(", by the occlusion of {} pixels from depth alone", pixels) : "");
+RimRequest RimFlags::request() const {
+  RimRequest request;
+  if (given[0]->count() > 0) request.infer = occlusion == "inferred";
+  if (given[1]->count() > 0)
+    request.form = inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE;
+  if (given[2]->count() > 0) request.fromFile = source == "auto";
+  if (given[3]->count() > 0) request.radius = radius;
+  return request;
 }
 
 }  // namespace pellucid::cli

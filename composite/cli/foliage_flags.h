@@ -2,23 +2,19 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
-#include "composite/cli/messages.h"
-#include "engine_bridge/gl/transparent_pass.h"
+#include "composite/pipeline/resolve_planes.h"
 
 namespace pellucid::cli {
 
 struct FoliageFlags {
   std::string occlusion = "inferred", inference = "relative", source = "auto";
   double direct = 0.0, radius = 0.0;
-  CLI::Option* details[4] = {};  // that --occlusion off has no use for
+  CLI::Option* details[4] = {};  // form, direct share, radius, source: empty in the request unless they are given
   //   keepsApart  the verb can also leave the rims to `resolve`
   void addTo(CLI::App& verb, bool keepsApart = false);
-  bool isApart() const { return occlusion == "apart"; }
-  // Gives the settings occluders when the scene has leaves that want some: surroundings and masks must be settled.
-  //   pass  null when nothing is shaded
-  void applyTo(PassSettings& settings, TransparentPass* pass, const GBuffer& gbuffer, const Camera& camera,
-               Stages& stages) const;
+  void into(Request& request) const;
 };
 
 // The same of `resolve`, for planes that carry the light of their rims apart.
@@ -27,8 +23,7 @@ struct RimFlags {
   double radius = 0.0;
   std::vector<CLI::Option*> given;
   void addTo(CLI::App& verb);
-  // Darkens the sums. Throws UsageError for a flag that planes without rims cannot honour.
-  void applyTo(const RimPlanes& rims, const GBuffer& gbuffer, OitPlanes& planes) const;
+  RimRequest request() const;
 };
 
 }  // namespace pellucid::cli

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/results.h"
-#include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
+#include "composite/pipeline/shot.h"
 #include "engine_bridge/embree/opaque_render.h"
 #include "engine_bridge/gl/opaque_pass.h"
 #include "gbuffer/errors.h"
@@ -50,7 +50,7 @@ class Progress {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < std::chrono::seconds(5) || done >= 1.0) return;
     last_ = now;
-    spdlog::info("gbuffer: {:.0f}% of the picture", 100.0 * done);
+    note("gbuffer: {:.0f}% of the picture", 100.0 * done);
   }
 
  private:
@@ -114,20 +114,18 @@ void gbuffer(const GbufferFlags& flags) {
   say(scene.notes);
   GBuffer frame;
   frame.display = frame.data = window;
-  const Camera camera = chooseCamera(flags.camera, frame, scene, flags.scenes.front());
-  spdlog::info("camera: {}", camera.origin);
+  const Camera camera = chooseCamera(cameraChoice(flags.camera), frame, scene, flags.scenes.front());
+  note("camera: {}", camera.origin);
   const auto opaque = std::count_if(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
     return !scene.materials[static_cast<std::size_t>(primitive.material)].transparent();
   });
-  if (opaque == 0)
-    spdlog::info("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
+  if (opaque == 0) note("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
 
   std::string device = "Embree";
   const OpaquePlanes planes = flags.renderer == "gl" ? rasterise(flags, scene, camera, window, stages, device)
                                                      : trace(flags, scene, camera, window, stages);
-  if (flags.renderer == "gl" && !planes.lights.empty())
-    spdlog::info("lights without shadows: --renderer embree traces them");
+  if (flags.renderer == "gl" && !planes.lights.empty()) say("lights without shadows: --renderer embree traces them");
   const std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
   say(stages.time("write",
                   [&] { return writeLayers(flags.output, window, window, layersOf(planes), attributes, &camera); }));
@@ -135,7 +133,7 @@ void gbuffer(const GbufferFlags& flags) {
   std::size_t triangles = 0;
   for (const Instance& instance : scene.instances)
     triangles += scene.primitives[static_cast<std::size_t>(instance.primitive)].indices.size() / 3;
-  RenderCounts counts;
+  RunCounts counts;
   counts.triangles = triangles;
   reportRun(flags.run, stages, counts, device, report);
 }

@@ -4,6 +4,7 @@
 
 #include "composite/cli/options.h"
 #include "composite/cli/verbs.h"
+#include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/inspect.h"
 

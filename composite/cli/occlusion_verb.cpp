@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/results.h"
-#include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
 #include "composite/occluders.h"
 #include "composite/occlusion.h"
+#include "composite/pipeline/shot.h"
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
 
@@ -80,7 +80,7 @@ OpaqueFile readLayer(const OcclusionFlags& flags) {
     ReadOptions windows = options;
     windows.depthKind = "planar";
     OpaqueFile first = readOpaque(flags.layer, windows);
-    const Camera camera = chooseCamera(flags.camera, first.gbuffer, Scene{}, flags.layer);
+    const Camera camera = chooseCamera(cameraChoice(flags.camera), first.gbuffer, Scene{}, flags.layer);
     return interpretOpaque(std::move(first.document), options, &camera);
   }();
   if (!layer.gbuffer.hasAlpha)
@@ -112,12 +112,12 @@ OccluderPlanes occludersBeside(const OcclusionFlags& flags, const GBuffer& gbuff
   const Image<std::uint8_t> wanted = occludersWanted(layer, gbuffer.data, form);
   bool computes = !settings.fromFile || !hasFile;
   for (std::size_t i = 0; i < wanted.size() && !computes; ++i) computes = wanted[i] && solids.lacking[i];
-  const Camera camera = computes ? chooseCamera(flags.camera, gbuffer, Scene{}, flags.opaque) : Camera{};
+  const Camera camera = computes ? chooseCamera(cameraChoice(flags.camera), gbuffer, Scene{}, flags.opaque) : Camera{};
   std::size_t pixels = 0;
   OccluderPlanes occluders = occludersOf(gbuffer, camera, std::move(solids), settings, &wanted, pixels);
   if (pixels > 0)
-    spdlog::info("{}: occlusion of {} pixels from depth alone{}", flags.opaque, pixels,
-                 settings.fromFile && hasFile ? ", where leaves stand that it lacks" : "");
+    note("{}: occlusion of {} pixels from depth alone{}", flags.opaque, pixels,
+         settings.fromFile && hasFile ? ", where leaves stand that it lacks" : "");
   return occluders;
 }
 
@@ -130,7 +130,7 @@ void occlusionVerb(const OcclusionFlags& flags) {
     if (!converts) return readOpaque(flags.opaque, options);
     options.depthKind = "planar";
     OpaqueFile first = readOpaque(flags.opaque, options);
-    const Camera camera = chooseCamera(flags.camera, first.gbuffer, Scene{}, flags.opaque);
+    const Camera camera = chooseCamera(cameraChoice(flags.camera), first.gbuffer, Scene{}, flags.opaque);
     return interpretOpaque(std::move(first.document), flags.read.options(), &camera);
   });
   say(opaque.notes);
@@ -154,11 +154,10 @@ void occlusionVerb(const OcclusionFlags& flags) {
       stages.time("occluders", [&] { return occludersBeside(flags, opaque.gbuffer, foliage, form); });
   const InferredOcclusion inferred = stages.time("infer", [&] { return inferOcclusion(foliage, occluders, form); });
   if (inferred.withoutDepth > 0)
-    spdlog::info("{}: {} of {} rim pixels have no depth and stay open", flags.layer, inferred.withoutDepth,
-                 inferred.rims);
+    note("{}: {} of {} rim pixels have no depth and stay open", flags.layer, inferred.withoutDepth, inferred.rims);
   if (inferred.withoutSources > 0)
-    spdlog::info("{}: {} of {} rim pixels have nothing opaque beside them and {}", flags.layer, inferred.withoutSources,
-                 inferred.rims, form == shading::PLD_OCCLUSION_PUBLISHED ? "turn black, as published" : "stay open");
+    note("{}: {} of {} rim pixels have nothing opaque beside them and {}", flags.layer, inferred.withoutSources,
+         inferred.rims, form == shading::PLD_OCCLUSION_PUBLISHED ? "turn black, as published" : "stay open");
   Image<glm::vec4> beauty = layer.gbuffer.beauty;
   Image<std::uint8_t> touched;
   stages.time("apply",

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
-#include "composite/cli/budget.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/tiers.h"
@@ -119,42 +119,84 @@ void SceneFlags::addTo(CLI::App& verb) {
       ->capture_default_str();
   verb.add_option("--order", order, "Submission order: file, reverse or shuffle:SEED")->capture_default_str();
   verb.add_option("--budget", budget,
-                  "Geometry resident at once, in bytes (64M, 2G; at least 1M): chunks, their GL buffers and pages of "
-                  "the files. "
+                  "Geometry resident at once, in bytes (64M, 2G): chunks, their GL buffers and pages of the files. "
                   "--shadows exact decodes all triangles besides")
       ->capture_default_str();
   verb.add_option("--device", device, "EGL device by number, see inspect --devices");
 }
 
-SceneOptions SceneFlags::options(double metresPerUnit, bool traced) const {
-  SceneOptions options;
-  options.metresPerUnit = metresPerUnit;
-  options.lumensPerWatt = lumensPerWatt;
-  options.overrides = overrides;
-  options.streamBytes = traced ? 0 : pageBytes();
-  return options;
+namespace {
+
+glm::dvec3 parsePoint(const std::string& text) {
+  const auto numbers = parseNumbers(text, ',', 3, "--camera", "three numbers X,Y,Z");
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
-std::size_t SceneFlags::pageBytes() const {
-  // More would only keep what has been drawn.
+// Pages of the files: more would only keep what has been drawn.
+std::size_t pageBytes(std::size_t budget) {
   constexpr std::size_t kShare = 4, kMost = std::size_t{16} << 20;
-  return std::min(std::max(parseBytes(budget, "--budget"), kLeastBudget) / kShare, kMost);
+  return std::clamp<std::size_t>(budget / kShare, 1, kMost);
 }
 
-void SceneFlags::applyTo(PassSettings& settings) const {
-  settings.filter = textureFilter == "mipmap"     ? TextureFilter::mipmap
-                    : textureFilter == "bilinear" ? TextureFilter::bilinear
-                                                  : TextureFilter::nearest;
-  settings.mask = mask == "smooth" ? MaskEdge::smooth : MaskEdge::hard;
-  settings.order = parseOrder(order);
-  settings.budgetBytes = parseBudget(budget) - pageBytes();
+}  // namespace
+
+CameraChoice cameraChoice(const std::string& text) {
+  if (text.empty()) return std::monostate();
+  if (text.find('=') == std::string::npos) return NamedCamera{text};
+  PlacedCamera camera;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ';');) {
+    const auto equals = part.find('=');
+    const std::string key = part.substr(0, equals);
+    const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
+    if (key == "eye")
+      camera.eye = parsePoint(value);
+    else if (key == "look")
+      camera.look = parsePoint(value);
+    else if (key == "up")
+      camera.up = parsePoint(value);
+    else if (key == "fov")
+      camera.fov = parseNumbers(value, ',', 1, "--camera", "fov=DEGREES")[0];
+    else
+      throw UsageError(fmt::format("--camera: found '{}', expected eye=, look=, up= or fov=", part));
+  }
+  if (!(camera.fov > 0 && camera.fov < 180))
+    throw UsageError(fmt::format("--camera: found fov={}, expected degrees between 0 and 180", camera.fov));
+  if (glm::length(glm::cross(camera.look - camera.eye, camera.up)) < 1e-12)
+    throw UsageError("--camera: the view direction and up are parallel, expected two directions");
+  return camera;
+}
+
+SurroundingsChoice surroundingsChoice(const std::string& text) {
+  if (text.empty()) return std::monostate();
+  if (isColour(text)) return parseColour(text, "--environment");
+  return PictureOfSurroundings{text};
+}
+
+void SceneFlags::into(Request& request) const {
+  const std::size_t bytes = parseBytes(budget, "--budget"), pages = pageBytes(bytes);
+  SceneOptions& scene = request.shot.scene;
+  scene.metresPerUnit = request.shot.read.metresPerUnit;
+  scene.lumensPerWatt = lumensPerWatt;
+  scene.overrides = overrides;
+  scene.streamBytes = pages;
+  request.shot.camera = cameraChoice(camera);
+  request.shot.surroundings = surroundingsChoice(environment);
+  request.filter = textureFilter == "mipmap"     ? TextureFilter::mipmap
+                   : textureFilter == "bilinear" ? TextureFilter::bilinear
+                                                 : TextureFilter::nearest;
+  request.mask = mask == "smooth" ? MaskEdge::smooth : MaskEdge::hard;
+  request.residency.order = parseOrder(order);
+  request.residency.budgetBytes = std::max<std::size_t>(bytes - pages, 1);
+  request.device = device;
 }
 
 void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
-  const std::string names = listsToo ? allMethodNames() : "phenomenological";
+  const std::string names = listsToo ? allMethodNames() : sumMethodNames();
   verb.add_option("--method", method, names)
       ->check([listsToo, names](const std::string& text) -> std::string {
-        if (text == "phenomenological" || (listsToo && methodNamed(text))) return "";
+        const Method* row = methodNamed(text);
+        if (row && (listsToo || row->isSum)) return "";
         return fmt::format("--method: found '{}', expected {}", text, names);
       })
       ->capture_default_str();
@@ -165,53 +207,40 @@ void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
     promises += fmt::format("{}{}: {}", promises.empty() ? "" : "; ", row.name, row.promise);
   }
   verb.add_option("--precision", precision, promises)->check(CLI::IsMember(tiers))->capture_default_str();
-  addWeightTo(verb, listsToo);
+  addWeightTo(verb, true);
 }
 
 void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
-  autoAllowed = takesAuto;
-  normalisationOption = verb.add_option("--normalisation", normalisation)
-                            ->check(CLI::IsMember({"spectral", "published"}))
-                            ->capture_default_str();
-  weightOption = verb.add_option("--weight", weight,
-                                 weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
-                     ->capture_default_str();
+  normalisationOption_ = verb.add_option("--normalisation", normalisation)
+                             ->check(CLI::IsMember({"spectral", "published"}))
+                             ->capture_default_str();
+  weightOption_ = verb.add_option("--weight", weight,
+                                  weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
+                      ->capture_default_str();
   verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for " + rangedWeights());
 }
 
-std::optional<ChosenMethod> MethodFlags::listMethod() const {
-  const Method& row = *methodNamed(method);
-  if ((isPublished() && !row.takesPublished) || (isExact() && !row.takesExact))
-    throw UsageError(fmt::format("--precision: found {} with --method {}, expected phenomenological{}", precision,
-                                 method, isExact() ? " or over" : ""));
-  // Of the sorted truth the flags are the fit's and the measured sums'.
-  const bool refuses = row.kind != MethodKind::sorted;
-  if (refuses && !row.weighs && weightOption && weightOption->count() > 0)
-    throw UsageError(fmt::format("--weight: --method {} does not weigh its layers", method));
-  if (refuses && !row.normalises && normalisationOption && normalisationOption->count() > 0)
-    throw UsageError(fmt::format("--normalisation: --method {} {}", method,
-                                 row.weighs ? "has one of its own" : "does not weigh its layers"));
-  return chooseMethod(method);
+Tier tierOf(const std::string& precision) {
+  return tierNamed(precision).value_or(Tier::float32);
 }
 
-void MethodFlags::applyTo(PassSettings& settings, const Camera& camera) const {
-  if (isPublished()) {
-    if (normalisationOption->count() > 0 && normalisation == "spectral")
-      throw UsageError(
-          "--normalisation: found spectral with --precision published, expected published: its targets have one "
-          "denominator for all channels");
-    settings.tier = SumsTier::published;
-  }
-  settings.normalisation = isPublished() || normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED
-                                                                         : shading::PLD_NORMALISE_SPECTRAL;
-  if (isAuto() && !autoAllowed)
-    throw UsageError("--weight: found 'auto', expected a weight: this verb has no truth to fit it to");
-  settings.weight = parseWeight(isAuto() ? "eq5" : weight, settings.weight);  // auto: until the fit
-  double rangeNear = camera.rangeNear > 0 ? camera.rangeNear : 0.1;
-  double rangeFar = camera.rangeFar > rangeNear ? camera.rangeFar : rangeNear * 1e4;
-  if (!weightRange.empty()) std::tie(rangeNear, rangeFar) = parseRange(weightRange, "--weight-range");
-  settings.weight.rangeNear = static_cast<float>(rangeNear);
-  settings.weight.rangeFar = static_cast<float>(rangeFar);
+void MethodFlags::into(Request& request) const {
+  request.method = method;
+  request.tier = tierOf(precision);
+  if (method == "over")
+    request.paint = PaintSorted{};
+  else if (const std::optional<ChosenMethod> chosen = chooseMethod(method))
+    request.paint = PaintListed{*chosen};
+  else
+    request.paint = PaintSums{};
+  if (weight == "auto")
+    request.sums.fitWeight = true;
+  else if (weightOption_ && weightOption_->count() > 0)
+    request.sums.weight = parseWeight(weight, {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f});
+  if (!weightRange.empty()) request.sums.weightRange = parseRange(weightRange, "--weight-range");
+  if (normalisationOption_ && normalisationOption_->count() > 0)
+    request.sums.normalisation =
+        normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED : shading::PLD_NORMALISE_SPECTRAL;
 }
 
 void RunFlags::addTo(CLI::App& verb) {

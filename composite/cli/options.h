@@ -6,10 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "composite/methods/method.h"
-#include "engine_bridge/gl/transparent_pass.h"
-#include "engine_bridge/scene/gltf.h"
-#include "gbuffer/opaque_io.h"
+#include "composite/pipeline/request.h"
 
 namespace pellucid::cli {
 
@@ -28,29 +25,24 @@ struct SceneFlags {
   std::string textureFilter = "mipmap", mask = "smooth", order = "file", budget = "256M";
   int device = -1;
   void addTo(CLI::App& verb);
-  // For the transparent pass: triangles stay in their files, unless rays meet them too. Throws UsageError.
-  SceneOptions options(double metresPerUnit, bool traced) const;
-  void applyTo(PassSettings& settings) const;  // throws UsageError
-
- private:
-  std::size_t pageBytes() const;  // of --budget, for pages of the files
+  void into(Request& request) const;  // throws UsageError
 };
+
+CameraChoice cameraChoice(const std::string& text);              // "", a name or eye=...;look=...; throws UsageError
+SurroundingsChoice surroundingsChoice(const std::string& text);  // "", R,G,B or a file; throws UsageError
 
 struct MethodFlags {
   std::string method = "phenomenological", precision = "float", normalisation = "spectral", weight = "eq5", weightRange;
-  bool autoAllowed = false;
   void addTo(CLI::App& verb, bool listsToo);
   void addWeightTo(CLI::App& verb, bool takesAuto);  // --normalisation, --weight, --weight-range alone
-  bool isAuto() const { return weight == "auto"; }   // then the weight is to be fitted, see fitShotWeight
-  bool isOver() const { return method == "over"; }
-  bool isExact() const { return precision == "exact"; }
-  bool isPublished() const { return precision == "published"; }
-  // A method of the table that works from fragment lists. Throws UsageError for a flag that it cannot honour.
-  std::optional<ChosenMethod> listMethod() const;
-  const CLI::Option *weightOption = nullptr, *normalisationOption = nullptr;
-  // The range comes from the flag, else from the camera, else 0.1:1000. Throws UsageError.
-  void applyTo(PassSettings& settings, const Camera& camera) const;
+  // What paints, the tier and the weight. --method stochastic is StochasticFlags'. Throws UsageError.
+  void into(Request& request) const;
+
+ private:
+  const CLI::Option *weightOption_ = nullptr, *normalisationOption_ = nullptr;
 };
+
+Tier tierOf(const std::string& precision);
 
 struct RunFlags {
   int threads = 0;

@@ -1,16 +1,11 @@
-#include <fmt/format.h>
-
+#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "composite/cli/device_resolve.h"
 #include "composite/cli/foliage_flags.h"
+#include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
-#include "composite/cli/scatter_flags.h"
-#include "composite/cli/shot.h"
 #include "composite/cli/verbs.h"
-#include "composite/resolve.h"
-#include "gbuffer/errors.h"
-#include "gbuffer/planes_io.h"
+#include "composite/pipeline/resolve_planes.h"
 
 namespace pellucid::cli {
 namespace {
@@ -25,48 +20,29 @@ struct ResolveFlags {
   RimFlags rims;
 };
 
-std::string windowText(const Window& window) {
-  return fmt::format("({}, {})-({}, {})", window.x0, window.y0, window.x1 - 1, window.y1 - 1);
+PlanesRequest requestOf(const ResolveFlags& flags) {
+  PlanesRequest request;
+  request.opaque = flags.opaque;
+  request.read = flags.read.options();
+  request.planes = flags.planes;
+  request.selfModulation = flags.selfModulation.value();
+  request.lookup = flags.lookup.settings();
+  request.onDevice = flags.lookup.onDevice();
+  request.rims = flags.rims.request();
+  request.layers = layerNames(flags.layers);
+  return request;
 }
 
 void resolveVerb(const ResolveFlags& flags) {
   const Threads threads(flags.run.threads);
-  Stages stages;
-  const OpaqueFile opaque = stages.time("read picture", [&] { return readOpaque(flags.opaque, flags.read.options()); });
-  say(opaque.notes);
-  RimPlanes rims;
-  OitPlanes planes = stages.time("read planes", [&] { return readPlanes(flags.planes[0], &rims); });
-  for (std::size_t i = 1; i < flags.planes.size(); ++i)
-    stages.time("read planes", [&] {
-      RimPlanes more;
-      mergePlanes(planes, readPlanes(flags.planes[i], &more));
-      rims.add(more);
-    });
-  if (planes.data != opaque.gbuffer.data)
-    throw MeaningError(fmt::format("{}: found data window {}, expected {} of {}", flags.planes[0],
-                                   windowText(planes.data), windowText(opaque.gbuffer.data), flags.opaque));
-  stages.time("occlusion of leaves", [&] { flags.rims.applyTo(rims, opaque.gbuffer, planes); });
-  ResolveSettings settings;
-  settings.selfModulation = flags.selfModulation.isOn(planes.published());
-  if (planes.published()) refusePublishedLayers(flags.layers);
-  const LookupSettings lookup = flags.lookup.settings();
-  std::optional<GlContext> context;
-  std::optional<ResolvePass> device;
-  if (flags.lookup.onDevice() && planes.published())
-    throw UsageError("--resolve: found gl with planes of tier published, expected cpu");
-  if (flags.lookup.onDevice()) device.emplace(context.emplace());
-  const Veil veil = stages.time(
-      "resolve", [&] { return resolveSums(device ? &*device : nullptr, planes, settings, lookup, opaque.gbuffer); });
-  const Picture picture = stages.time("compose", [&] { return compose(veil, opaque.gbuffer); });
-  std::vector<ExtraLayer> layers = requestedLayers(flags.layers, veil);
-  if (wantsDebugLayers(flags.layers))
-    for (ExtraLayer& layer : debugLayers(flags.layers, planes)) layers.push_back(std::move(layer));
-  say(stages.time("write", [&] {
-    return writePicture(flags.output, opaque, picture.rgba, picture.touched, layers,
-                        {{"pellucid:method", planes.info.method}});
+  Journal notes = journal();
+  const ResolvedPlanes result = resolvePlanes(requestOf(flags), notes);
+  say(notes.time("write", [&] {
+    return writePicture(flags.output, result.opaque, result.picture.rgba, result.picture.touched, result.layers,
+                        {{"pellucid:method", result.info.method}});
   }));
   nlohmann::json report{{"output", flags.output}};
-  reportRun(flags.run, stages, {}, context ? context->description() : "CPU", report);
+  reportRun(flags.run, notes.stages, {}, result.device, report);
 }
 
 }  // namespace

@@ -27,52 +27,6 @@ Threads::Threads(int count) : impl_(std::make_unique<Impl>()) {
 
 Threads::~Threads() = default;
 
-void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
-  verb.add_option("--layers", layers,
-                  "Layers to add: transparent, transmission, depth; for debugging D, delta, weight, count")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"transparent", "transmission", "depth", "D", "delta", "weight", "count"}));
-}
-
-ExtraLayer beautyLayer(const Image<glm::vec4>& rgba) {
-  ExtraLayer layer;
-  const char* names[] = {"R", "G", "B", "A"};
-  for (int c = 0; c < 4; ++c) {
-    Image<float> plane(rgba.width(), rgba.height());
-    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = rgba[i][c];
-    layer.channels.emplace_back(names[c], std::move(plane));
-  }
-  return layer;
-}
-
-std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, const Veil& veil) {
-  const int width = veil.touched.width(), height = veil.touched.height();
-  std::vector<ExtraLayer> result;
-  const auto plane = [&](auto&& value) {
-    Image<float> image(width, height);
-    for (std::size_t i = 0; i < image.size(); ++i) image[i] = value(i);
-    return image;
-  };
-  const char* names[] = {"R", "G", "B"};
-  for (const std::string& name : layers) {
-    ExtraLayer layer{name == "depth" ? "transparent" : name, {}};
-    if (name == "transparent") {
-      for (int c = 0; c < 3; ++c)
-        layer.channels.emplace_back(names[c], plane([&](std::size_t i) { return veil.light[i][c]; }));
-      layer.channels.emplace_back("A", plane([&](std::size_t i) {
-                                    return veil.touched[i] ? shading::alphaOver(veil.transmission[i], 0.0f) : 0.0f;
-                                  }));
-    } else if (name == "transmission") {
-      for (int c = 0; c < 3; ++c)
-        layer.channels.emplace_back(names[c], plane([&](std::size_t i) { return veil.transmission[i][c]; }));
-    } else if (name == "depth") {
-      layer.channels.emplace_back("Z", plane([&](std::size_t i) { return veil.frontZ[i]; }));
-    }
-    if (!layer.channels.empty()) result.push_back(std::move(layer));
-  }
-  return result;
-}
-
 namespace {
 
 std::string clampText(const PublishedClamps& clamps) {
@@ -82,16 +36,35 @@ std::string clampText(const PublishedClamps& clamps) {
 
 }  // namespace
 
-void refusePublishedLayers(const std::vector<std::string>& layers) {
-  for (const std::string& name : layers)
-    if (name == "depth" || name == "weight" || name == "count")
-      throw UsageError(fmt::format("--layers: found {} with the published tier, whose targets do not hold it", name));
+void reportError(const RunFlags& flags, const Result& result, nlohmann::json& report) {
+  if (const auto* within = result.plan.as<PaintWithin>()) {
+    const ToleranceCounts& counts = result.counts.tolerance;
+    report["tolerance"] = {
+        {"E", within->tolerance}, {"certified", counts.certified}, {"recomputed", counts.recomputed}};
+    if (!flags.json)
+      fmt::print("tolerance {}: {} pixels certified, {} recomputed exactly\n", within->tolerance, counts.certified,
+                 counts.recomputed);
+  }
+  if (!result.error) return;
+  const ErrorStatistics& error = *result.error;
+  const Window& data = result.dataWindow;
+  report["error"] = {{"mean", error.mean},
+                     {"rmse", error.rmse},
+                     {"p99", error.p99},
+                     {"max", error.maximum},
+                     {"worst", {error.worstX + data.x0, error.worstY + data.y0}},
+                     {"pixels", error.pixels},
+                     {"notFinite", error.nonFinite}};
+  if (!flags.json) fmt::print("error of {} against sorted over: {}\n", result.plan.method, errorLine(error));
 }
 
-void reportRun(const RunFlags& flags, const Stages& stages, const RenderCounts& counts, const std::string& device,
+void reportRun(const RunFlags& flags, const Stages& stages, const RunCounts& counts, const std::string& device,
                nlohmann::json& report) {
+  if (counts.shadowRays)
+    say(fmt::format("light on transparent things: {} shadow rays in {:.2f} s", counts.shadowRays,
+                    counts.shadowSeconds));
   if (counts.clamps.total())
-    spdlog::warn("published tier: clamped to what its targets hold: {}", clampText(counts.clamps));
+    say(fmt::format("published tier: clamped to what its targets hold: {}", clampText(counts.clamps)));
   if (flags.stats) {
     nlohmann::json seconds = nlohmann::json::object();
     for (const auto& [name, value] : stages.seconds()) seconds[name] = value;

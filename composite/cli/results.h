@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "composite/cli/messages.h"
 #include "composite/cli/options.h"
-#include "composite/cli/render.h"
+#include "composite/pipeline/result.h"
 
 namespace pellucid::cli {
 
@@ -22,15 +23,11 @@ class Threads {
   std::unique_ptr<Impl> impl_;
 };
 
-void addLayersOption(CLI::App& verb, std::vector<std::string>& layers);
-ExtraLayer beautyLayer(const Image<glm::vec4>& rgba);  // R, G, B, A without a layer's name
-std::vector<ExtraLayer> requestedLayers(const std::vector<std::string>& layers, const Veil& veil);
-
-// Throws UsageError for a layer that the published tier cannot give.
-void refusePublishedLayers(const std::vector<std::string>& layers);
+// Prints what --tolerance and --measure found, or puts it into the report.
+void reportError(const RunFlags& flags, const Result& result, nlohmann::json& report);
 
 // Prints --stats as text, or with --json the report with the statistics in it.
-void reportRun(const RunFlags& flags, const Stages& stages, const RenderCounts& counts, const std::string& device,
+void reportRun(const RunFlags& flags, const Stages& stages, const RunCounts& counts, const std::string& device,
                nlohmann::json& report);
 
 }  // namespace pellucid::cli

@@ -20,13 +20,6 @@ float positive(const std::string& text, const std::string& flag, const std::stri
   return static_cast<float>(value);
 }
 
-template <class Value>
-Image<float> planeOf(const OitPlanes& planes, Value value) {
-  Image<float> image(planes.data.width(), planes.data.height());
-  for (std::size_t i = 0; i < image.size(); ++i) image[i] = value(i);
-  return image;
-}
-
 }  // namespace
 
 void LookupFlags::addTo(CLI::App& verb) {
@@ -48,9 +41,12 @@ LookupSettings LookupFlags::settings() const {
   LookupSettings settings;
   settings.kernel = kernel == "disc" ? shading::PLD_DIFFUSE_DISC : shading::PLD_DIFFUSE_GAUSSIAN;
   settings.exact = gather == "exact";
-  if (settings.exact && kernel == "disc")
-    throw UsageError("--gather: found exact, expected fast: the disc has one gather, and its taps are few");
   return settings;
+}
+
+void LookupFlags::into(Request& request) const {
+  request.lookup = settings();
+  request.resolveOnDevice = onDevice();
 }
 
 void SelfModulationFlag::addTo(CLI::App& verb) {
@@ -73,8 +69,8 @@ void ScatterFlags::addTo(CLI::App& verb) {
   verb.add_flag("--no-prune", noPrune, "Run the full model, also what no material of the scene needs: for tests");
 }
 
-void ScatterFlags::applyTo(PassSettings& settings) const {
-  ScatterSettings& scatter = settings.scatter;
+void ScatterFlags::into(Request& request) const {
+  ScatterSettings& scatter = request.scatter;
   const std::string form = "fixed:METRES, depth, thickness or off", fixed = "fixed:";
   if (refract.rfind(fixed, 0) == 0) {
     scatter.refract = shading::PLD_REFRACT_FIXED;
@@ -96,44 +92,6 @@ void ScatterFlags::applyTo(PassSettings& settings) const {
   scatter.netCoverage = diffusion == "netCoverage";
   scatter.dispersion = dispersion == "on";
   scatter.prune = !noPrune;
-}
-
-const std::vector<std::string>& debugLayerNames() {
-  static const std::vector<std::string> names{"D", "delta", "weight", "count"};
-  return names;
-}
-
-bool wantsDebugLayers(const std::vector<std::string>& layers) {
-  return std::any_of(layers.begin(), layers.end(), [](const std::string& name) {
-    return std::find(debugLayerNames().begin(), debugLayerNames().end(), name) != debugLayerNames().end();
-  });
-}
-
-std::vector<ExtraLayer> debugLayers(const std::vector<std::string>& layers, const OitPlanes& planes) {
-  ExtraLayer debug{"oit", {}};
-  const auto mean = [&](std::size_t i, int component) {
-    return planes.scatters() && planes.refraction[i].z > 0.0f ? planes.refraction[i][component] / planes.refraction[i].z
-                                                              : 0.0f;
-  };
-  for (const std::string& name : layers) {
-    if (name == "D") {
-      debug.channels.emplace_back("D", planeOf(planes, [&](std::size_t i) {
-                                    return planes.scatters() ? std::sqrt(planes.refraction[i].w) : 0.0f;
-                                  }));
-    } else if (name == "delta") {
-      debug.channels.emplace_back("delta.X", planeOf(planes, [&](std::size_t i) { return mean(i, 0); }));
-      debug.channels.emplace_back("delta.Y", planeOf(planes, [&](std::size_t i) { return mean(i, 1); }));
-    } else if (name == "weight") {  // mean weight of the layers: sum of w o over sum of o
-      debug.channels.emplace_back("weight", planeOf(planes, [&](std::size_t i) {
-                                    const float opacity = shading::meanOf(glm::vec3(planes.opacity[i]));
-                                    return opacity > 0.0f ? shading::meanOf(glm::vec3(planes.weight[i])) / opacity
-                                                          : 0.0f;
-                                  }));
-    } else if (name == "count") {
-      debug.channels.emplace_back("count", planeOf(planes, [&](std::size_t i) { return planes.weight[i].a; }));
-    }
-  }
-  return {debug};
 }
 
 }  // namespace pellucid::cli

@@ -1,28 +1,28 @@
-// Flags of refraction and diffusion, and the planes that show what they did.
+// Flags of refraction and diffusion.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
-#include <vector>
 
-#include "composite/gather.h"
-#include "engine_bridge/gl/transparent_pass.h"
-#include "gbuffer/opaque_io.h"
+#include "composite/pipeline/request.h"
 
 namespace pellucid::cli {
 
 // Of the lookup alone: what the compositing step needs.
 struct LookupFlags {
   std::string kernel = "gaussian", gather = "fast", resolver = "cpu";
-  bool onDevice() const { return resolver == "gl"; }
   void addTo(CLI::App& verb);
   void addResolverTo(CLI::App& verb);
-  LookupSettings settings() const;  // throws UsageError
+  void into(Request& request) const;
+  LookupSettings settings() const;
+  bool onDevice() const { return resolver == "gl"; }
 };
 
 // PT17 eq. 14. On with the published tier, off elsewhere, unless the user says.
 struct SelfModulationFlag {
   void addTo(CLI::App& verb);
-  bool isOn(bool published) const { return option->count() > 0 ? asked : published; }
+  // Empty unless the user says: then the tier decides.
+  std::optional<bool> value() const { return option && option->count() > 0 ? std::optional(asked) : std::nullopt; }
   bool asked = false;
   const CLI::Option* option = nullptr;
 };
@@ -32,12 +32,7 @@ struct ScatterFlags {
   std::string refract = "depth", diffusion = "coverage", diffusionScale = "0.3:0.5", dispersion = "on";
   bool noPrune = false;
   void addTo(CLI::App& verb);
-  void applyTo(PassSettings& settings) const;  // throws UsageError
+  void into(Request& request) const;  // throws UsageError
 };
-
-// Names of --layers that show planes of the transparent pass, at pixel centres.
-const std::vector<std::string>& debugLayerNames();
-bool wantsDebugLayers(const std::vector<std::string>& layers);
-std::vector<ExtraLayer> debugLayers(const std::vector<std::string>& layers, const OitPlanes& planes);
 
 }  // namespace pellucid::cli

@@ -53,33 +53,32 @@ void StochasticFlags::addTo(CLI::App& verb) {
           ->capture_default_str();
 }
 
-std::optional<StochasticSettings> StochasticFlags::settings(const std::string& method, int passes, bool shadows) const {
-  const std::optional<Variant> variant = stochasticVariant(method);
+void StochasticFlags::into(Request& request) const {
+  request.shadows.seed = static_cast<std::uint32_t>(seed);
+  const std::optional<Variant> variant = stochasticVariant(request.method);
   if (!variant) {
     for (const CLI::Option* option :
          {samplesOption_, adaptiveOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
-      if (option && option->count() > 0 && !(shadows && option == seedOption_))
-        throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(), method,
-                                     kStochasticNames));
-    return std::nullopt;
+      if (option && option->count() > 0 && !(request.shadows.byMaps() && option == seedOption_))
+        throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(),
+                                     request.method, kStochasticNames));
+    return;
   }
-  StochasticSettings settings;
-  settings.variant = *variant;
   if (correctionOption_ && correctionOption_->count() > 0 && *variant != Variant::depth)
-    throw UsageError(fmt::format("--correction: --method {} is {} corrected, expected stochastic:depth", method,
+    throw UsageError(fmt::format("--correction: --method {} is {} corrected, expected stochastic:depth", request.method,
                                  *variant == Variant::alpha ? "always" : "never"));
+  request.paint = PaintSamples{settings(*variant, request.passes), sampledOn == "gl"};
+}
+
+StochasticSettings StochasticFlags::settings(Variant variant, int passes) const {
+  StochasticSettings settings;
+  settings.variant = variant;
   settings.corrected = correction == "on";
   settings.stratified = masks == "stratified";
   settings.adaptive = adaptive;
-  if (adaptive > 0.0 && onDevice())
-    throw UsageError("--samples-adaptive: found --sampled-on gl, which draws as many samples everywhere, expected cpu");
   settings.seed = static_cast<std::uint32_t>(seed);
   const bool given = samplesOption_ && samplesOption_->count() > 0;
   settings.samples = given ? samples : (std::max(kDefaultSamples, passes) + passes - 1) / passes * passes;
-  if (settings.samples % passes != 0)
-    throw UsageError(
-        fmt::format("--samples: found {} with --aa {}, expected a multiple of --aa: every pass holds as many",
-                    settings.samples, passes));
   return settings;
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "composite/methods/stochastic.h"
+#include "composite/pipeline/request.h"
 
 namespace pellucid::cli {
 
@@ -17,11 +17,10 @@ struct StochasticFlags {
   double adaptive = 0.0;
   std::string masks = "stratified", correction = "on", sampledOn = "cpu";
   void addTo(CLI::App& verb);
-  bool onDevice() const { return sampledOn == "gl"; }
-  // Nothing for other methods. Throws UsageError for flags that the method cannot honour.
-  //   passes   --aa; the masks are stratified across all of them
-  //   shadows  drawn at random too: --seed is theirs
-  std::optional<StochasticSettings> settings(const std::string& method, int passes, bool shadows = false) const;
+  // Paints by samples under --method stochastic. Throws UsageError for flags that another method, or a variant, cannot
+  // honour; after MethodFlags, ShadowFlags and --aa. The masks are stratified across all passes.
+  void into(Request& request) const;
+  StochasticSettings settings(StochasticSettings::Variant variant, int passes) const;
 
  private:
   CLI::Option *samplesOption_ = nullptr, *seedOption_ = nullptr, *masksOption_ = nullptr, *correctionOption_ = nullptr,

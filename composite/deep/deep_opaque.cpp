@@ -64,9 +64,11 @@ DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit) {
   return opaque;
 }
 
-FragmentLists holdOut(const FragmentLists& lists, const DeepOpaque& opaque) {
-  FragmentLists row;
+HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool everywhere) {
+  HeldOutRow held;
+  FragmentLists& row = held.lists;
   row.offsets.assign(1, 0);
+  held.first.assign(1, 0);
   std::vector<glm::vec4> solids;
   const int left = lists.window.x0 - opaque.data.x0, top = lists.window.y0 - opaque.data.y0;
   std::size_t pixel = 0;
@@ -74,43 +76,69 @@ FragmentLists holdOut(const FragmentLists& lists, const DeepOpaque& opaque) {
     for (int x = 0; x < lists.window.width(); ++x, ++pixel) {
       const std::uint64_t first = lists.offsets[pixel], last = lists.offsets[pixel + 1];
       const glm::vec4 solid = lists.solid[pixel];
-      if (first == last && !std::isfinite(solid.a)) continue;
-      const auto upTo = [&](float z) {
-        for (std::uint64_t i = first; i < last; ++i)
-          if (lists.fragments[i].z <= z) row.fragments.push_back(lists.fragments[i]);
-        solids.push_back(solid.a <= z ? solid : glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
-        row.offsets.push_back(row.fragments.size());
-      };
       const std::size_t own = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(opaque.data.width()) +
                               static_cast<std::size_t>(left + x);
-      for (std::uint64_t k = opaque.offsets[own]; k < opaque.offsets[own + 1]; ++k) upTo(opaque.samples[k].z);
-      upTo(kNothing);
+      const auto upTo = [&](float z, std::uint64_t sample) {
+        for (std::uint64_t i = first; i < last; ++i) {
+          if (lists.fragments[i].z > z) continue;
+          row.fragments.push_back(lists.fragments[i]);
+          if (lists.disperses()) row.dispersion.push_back(lists.dispersion[i]);
+        }
+        solids.push_back(solid.a <= z ? solid : glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
+        row.offsets.push_back(row.fragments.size());
+        held.pixel.emplace_back(lists.window.x0 + x, lists.window.y0 + y);
+        held.z.push_back(z);
+        held.place.push_back(sample + own);
+      };
+      if (everywhere || first != last || std::isfinite(solid.a)) {
+        for (std::uint64_t k = opaque.offsets[own]; k < opaque.offsets[own + 1]; ++k) upTo(opaque.samples[k].z, k);
+        upTo(kNothing, opaque.offsets[own + 1]);
+      }
+      held.first.push_back(held.z.size());
     }
   row.window = {0, 0, static_cast<int>(solids.size()), 1};
   row.solid = Image<glm::vec4>(row.window.width(), 1);
   std::copy(solids.begin(), solids.end(), row.solid.row(0));
-  return row;
+  return held;
 }
 
-void addHeldOut(const FragmentLists& lists, const FragmentLists& heldOut, const Veil& row, const DeepOpaque& opaque,
+std::size_t placesOf(const DeepOpaque& opaque) {
+  return opaque.samples.size() + opaque.offsets.size() - 1;
+}
+
+glm::vec3 sumOfPlaces(const DeepOpaque& opaque, std::size_t pixel, const Image<glm::vec3>& places) {
+  glm::dvec3 rest(1.0), sum(0.0);
+  for (std::uint64_t k = opaque.offsets[pixel]; k < opaque.offsets[pixel + 1]; ++k) {
+    const glm::dvec3 share(opaque.samples[k].share);
+    rest -= share;
+    sum += share * glm::dvec3(places[k + pixel]);
+  }
+  sum += glm::max(rest, glm::dvec3(0.0)) * glm::dvec3(places[opaque.offsets[pixel + 1] + pixel]);
+  return glm::vec3(sum);
+}
+
+void addHeldOut(const FragmentLists& lists, const HeldOutRow& heldOut, const Veil& row, const DeepOpaque& opaque,
                 const OitPlanes* scatter, Veil& veil, Image<glm::vec3>& lookedUp) {
   const int left = lists.window.x0 - opaque.data.x0, top = lists.window.y0 - opaque.data.y0;
-  std::size_t pixel = 0, entry = 0;
+  const std::vector<Fragment>& fragments = heldOut.lists.fragments;
+  std::size_t pixel = 0;
   for (int y = 0; y < lists.window.height(); ++y)
     for (int x = 0; x < lists.window.width(); ++x, ++pixel) {
-      if (lists.offsets[pixel] == lists.offsets[pixel + 1] && !std::isfinite(lists.solid[pixel].a)) continue;
+      if (heldOut.first[pixel] == heldOut.first[pixel + 1]) continue;
       const int px = left + x, py = top + y;
       const std::size_t own =
           static_cast<std::size_t>(py) * static_cast<std::size_t>(opaque.data.width()) + static_cast<std::size_t>(px);
+      const bool looksElsewhere = scatter && scattersAt(*scatter, px, py);
       glm::dvec3 rest(1.0), light(0.0), behind(0.0), transmission(0.0), elsewhere(0.0);
       float front = kNothing;
       bool touched = false;
       float open = 0.0f;
+      std::size_t entry = heldOut.first[pixel];
       for (std::uint64_t k = opaque.offsets[own]; k <= opaque.offsets[own + 1]; ++k, ++entry) {
         const bool beyond = k == opaque.offsets[own + 1];
         const glm::dvec3 share = beyond ? glm::max(rest, glm::dvec3(0.0)) : glm::dvec3(opaque.samples[k].share);
-        const auto begin = heldOut.fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.offsets[entry]);
-        const auto end = heldOut.fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.offsets[entry + 1]);
+        const auto begin = fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.lists.offsets[entry]);
+        const auto end = fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.lists.offsets[entry + 1]);
         const bool covered = row.touched[entry] && std::max({share.x, share.y, share.z}) > (beyond ? kCovered : 0.0);
         const glm::dvec3 passed = row.touched[entry] ? glm::dvec3(row.transmission[entry]) : glm::dvec3(1.0);
         rest -= share;
@@ -120,7 +148,7 @@ void addHeldOut(const FragmentLists& lists, const FragmentLists& heldOut, const 
           touched = true;
           front = std::min(front, row.frontZ[entry]);
         }
-        if (covered && scatter && scattersAt(*scatter, px, py) && std::any_of(begin, end, bends))
+        if (covered && looksElsewhere && std::any_of(begin, end, bends))
           elsewhere += share * passed;
         else if (beyond)
           open = shading::meanOf(glm::vec3(share * passed));

@@ -31,18 +31,31 @@ struct DeepOpaque {
 // Throws what resolveDeep and DeepReader throw.
 DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit);
 
-// Lists of one row of pixels: for every pixel of `lists`, one for each of its opaque samples, with the layers in front
-// of that sample alone, and one with all layers for what shows beyond. A pixel without layers or solid has none.
-FragmentLists holdOut(const FragmentLists& lists, const DeepOpaque& opaque);
+// Lists of one row of pixels: for every pixel of some lists, one entry for each of its opaque samples, with the layers
+// in front of that sample alone, and one with all layers for what shows beyond.
+struct HeldOutRow {
+  FragmentLists lists;               // window: entries x 1
+  std::vector<std::uint64_t> first;  // per pixel of the lists given, and the end: its entries in the row
+  std::vector<glm::ivec2> pixel;     // per entry: where in the display window
+  std::vector<float> z;              // per entry: depth of its opaque sample, planar metres, +inf beyond all
+  std::vector<std::size_t> place;    // per entry: where among all entries of the picture, see placesOf()
+};
+// A pixel without layers or solid has no entry, unless `everywhere` says that something else is in front of it.
+HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool everywhere = false);
+// How many entries the whole picture has: its samples, and one more for each pixel.
+std::size_t placesOf(const DeepOpaque& opaque);
 
 // The veil of such a row back to pixels of `veil`: every sample's light and transmission by its share. What stands
 // behind is in `applied`, except for what the lookups are still to add.
 //   veil      scatters()
-//   row       veil of holdOut(lists, opaque)
+//   row       veil of heldOut.lists
 //   scatter   where layers look the background up elsewhere, or null
 //   lookedUp  transmission of the samples that layers in front of them scatter
-void addHeldOut(const FragmentLists& lists, const FragmentLists& heldOut, const Veil& row, const DeepOpaque& opaque,
+void addHeldOut(const FragmentLists& lists, const HeldOutRow& heldOut, const Veil& row, const DeepOpaque& opaque,
                 const OitPlanes* scatter, Veil& veil, Image<glm::vec3>& lookedUp);
+
+// Sums each pixel's entries by their shares: what was worked out for every place of the picture, for its pixels.
+glm::vec3 sumOfPlaces(const DeepOpaque& opaque, std::size_t pixel, const Image<glm::vec3>& places);
 
 // Adds what the layers look up.
 void showThroughHeldOut(const Lookups& lookups, const Image<glm::vec3>& lookedUp, Veil& veil);

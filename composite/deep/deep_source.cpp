@@ -63,7 +63,7 @@ std::vector<std::string> DeepSource::notes() const {
 // One band: the rows of every source beside the lists, pixel by pixel.
 class DeepMerge {
  public:
-  DeepMerge(const FragmentLists& lists, std::vector<std::unique_ptr<DeepSource>>& sources, const GBuffer& shot,
+  DeepMerge(const FragmentLists& lists, std::span<const std::unique_ptr<DeepSource>> sources, const GBuffer& shot,
             VolumeRule rule)
       : lists_(lists), sources_(sources), shot_(shot), rule_(rule) {}
 
@@ -195,14 +195,14 @@ class DeepMerge {
   }
 
   const FragmentLists& lists_;
-  std::vector<std::unique_ptr<DeepSource>>& sources_;
+  std::span<const std::unique_ptr<DeepSource>> sources_;
   const GBuffer& shot_;
   VolumeRule rule_;
   std::vector<DeepRows> rows_;
   std::mutex mutex_;
 };
 
-void mergeDeep(const FragmentLists& lists, std::vector<std::unique_ptr<DeepSource>>& sources, const GBuffer& shot,
+void mergeDeep(const FragmentLists& lists, std::span<const std::unique_ptr<DeepSource>> sources, const GBuffer& shot,
                VolumeRule rule, std::uint64_t most, const std::function<void(const FragmentLists&)>& band) {
   DeepMerge merge(lists, sources, shot, rule);
   FragmentLists merged;

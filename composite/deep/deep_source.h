@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ enum class VolumeRule {
 // Adds the samples that lie in front of the G-buffer and of solids to the lists, and hands on the result in bands of
 // whole rows of the lists' window with about `most` deep samples each. An opaque sample becomes the pixel's solid. A
 // volume that the G-buffer's surface or a solid cuts keeps the part before it.
-void mergeDeep(const FragmentLists& lists, std::vector<std::unique_ptr<DeepSource>>& sources, const GBuffer& shot,
+void mergeDeep(const FragmentLists& lists, std::span<const std::unique_ptr<DeepSource>> sources, const GBuffer& shot,
                VolumeRule rule, std::uint64_t most, const std::function<void(const FragmentLists&)>& band);
 
 }  // namespace pellucid

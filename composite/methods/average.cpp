@@ -6,19 +6,22 @@
 
 namespace pellucid {
 
+LayerMix averageOf(const glm::dvec3& light, const glm::dvec3& opacity, double layers) {
+  LayerMix mix;
+  for (int c = 0; c < 3; ++c) {
+    mix.transmission[c] = std::pow(1.0 - opacity[c] / layers, layers);
+    mix.light[c] = opacity[c] > 0.0 ? light[c] / opacity[c] * (1.0 - mix.transmission[c]) : light[c];
+  }
+  return mix;
+}
+
 LayerMix mixAverage(const std::vector<MethodLayer>& layers, const MethodChoice&) {
-  const auto n = static_cast<double>(layers.size());
   glm::dvec3 light(0.0), opacity(0.0);
   for (const MethodLayer& layer : layers) {
     light += layer.light;
     opacity += layer.opacity;
   }
-  LayerMix mix;
-  for (int c = 0; c < 3; ++c) {
-    mix.transmission[c] = std::pow(1.0 - opacity[c] / n, n);
-    mix.light[c] = opacity[c] > 0.0 ? light[c] / opacity[c] * (1.0 - mix.transmission[c]) : light[c];
-  }
-  return mix;
+  return averageOf(light, opacity, static_cast<double>(layers.size()));
 }
 
 }  // namespace pellucid

@@ -87,6 +87,13 @@ std::string allMethodNames() {
   return namesOf(allMethods());
 }
 
+std::string sumMethodNames() {
+  std::vector<Method> sums;
+  for (const Method& row : allMethods())
+    if (row.isSum) sums.push_back(row);
+  return namesOf(sums);
+}
+
 std::string methodsHelp() {
   std::string text;
   for (const Method& method : allMethods()) text += formOf(method) + ": " + method.help + " (" + method.source + ")\n";

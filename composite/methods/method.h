@@ -68,7 +68,7 @@ struct Method {
   bool weighs = false;          // honours --weight, and --weight-range where the weight reads one
   bool normalises = false;      // honours --normalisation
   bool takesPublished = false;  // honours --precision published
-  bool takesExact = false;      // honours --precision exact
+  bool takesExact = true;       // honours --precision exact
   // Of every fragment of a pixel. Stochastic samples may be drawn on the device instead.
   bool needsLists() const { return kind == MethodKind::sorted || kind == MethodKind::listed; }
 };
@@ -92,7 +92,8 @@ const Method* methodNamed(const std::string& text);
 std::string methodNames();
 // "phenomenological, over, stochastic[:basic|alpha|depth], sum, ..." of allMethods().
 std::string allMethodNames();
-std::string methodsHelp();  // a line for every row
+std::string sumMethodNames();  // of the rows that are sums
+std::string methodsHelp();     // a line for every row
 
 // The layers of pixel i (row by row) that take part: in front of the solid, none solid themselves.
 void layersOf(const FragmentLists& lists, std::size_t i, float solidZ, std::vector<MethodLayer>& layers);
@@ -115,5 +116,9 @@ LayerMix mixWeighted(const std::vector<MethodLayer>&, const MethodChoice&);
 // The mean colour of WB13 listings 3 and 4, whose clamp keeps thin sums from blowing up and large ones from overflow.
 //   sum, weight  of w C and w alpha, >= 0
 glm::vec3 listingColour(const glm::vec3& sum, float weight);
+
+// WB13 eqs. 3 and 4 from what planes keep of a pixel: sums of its layers' light and opacity.
+LayerMix sumOf(const glm::dvec3& light, const glm::dvec3& opacity);
+LayerMix averageOf(const glm::dvec3& light, const glm::dvec3& opacity, double layers);
 
 }  // namespace pellucid

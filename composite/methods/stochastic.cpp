@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "composite/methods/adaptive_samples.h"
+
 namespace pellucid {
 namespace {
 
 using glm::dvec3;
 using Variant = StochasticSettings::Variant;
-
-constexpr int kLeastSets = 4;  // that a variance is estimated from
 
 bool before(const MethodLayer& a, const MethodLayer& b) {
   if (a.record->z != b.record->z) return a.record->z < b.record->z;
@@ -82,11 +82,13 @@ int stochasticBits(const StochasticSettings& settings) {
   return 32 * (settings.samples * sample + 12);
 }
 
+bool isCorrected(const StochasticSettings& settings) {
+  return settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
+}
+
 int stochasticPasses(const StochasticSettings& settings) {
   // ST10 section 3.5: net opacity, masks, and the sum of what they let through.
-  const bool corrected =
-      settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
-  return 1 + (corrected ? 1 : 0) + (settings.variant == Variant::depth ? 1 : 0);
+  return 1 + (isCorrected(settings) ? 1 : 0) + (settings.variant == Variant::depth ? 1 : 0);
 }
 
 StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
@@ -127,58 +129,22 @@ StochasticSums samplePixel(std::vector<MethodLayer>& layers, glm::ivec2 pixel, c
 StochasticSums samplePixelAdaptively(std::vector<MethodLayer>& layers, glm::ivec2 pixel,
                                      const StochasticSettings& settings, const MaskTable& masks,
                                      const StochasticShare& share, int& taken) {
-  StochasticSums mean = samplePixel(layers, pixel, settings, masks, share);
+  const StochasticSums first = samplePixel(layers, pixel, settings, masks, share);
   taken = 1;
   // A lone layer has no noise where its sums are scaled to the exact opacity.
-  const bool corrected =
-      settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
-  if (layers.size() < (corrected ? 2u : 1u)) return mean;
-  const dvec3 hidden = dvec3(1.0) - mean.beta;
-  // What is noisy: the light, and where nothing scales it the share of the background that shows.
-  const auto noisy = [&](const StochasticSums& sums, dvec3(&values)[2]) {
-    values[0] = stochasticLight(sums, hidden, settings);
-    values[1] = corrected || settings.variant == Variant::depth ? dvec3(0.0) : sums.empty;
-  };
-  dvec3 value[2], first[2], sum[2] = {dvec3(0.0), dvec3(0.0)}, square[2] = {dvec3(0.0), dvec3(0.0)};
-  noisy(mean, first);
+  if (layers.size() < (isCorrected(settings) ? 2u : 1u)) return first;
+  AdaptiveSamples sets(first, settings, share.step);
   StochasticSettings other = settings;
-  const int most = StochasticSettings::kMostSamples / settings.samples;
-  for (; taken < most; ++taken) {
-    if (taken >= kLeastSets) {
-      bool enough = true;
-      for (int v = 0; v < 2; ++v)
-        for (int c = 0; c < 3; ++c) {
-          const double variance = std::max(square[v][c] - sum[v][c] * sum[v][c] / taken, 0.0) / (taken - 1);
-          const double wanted = settings.adaptive * std::max(1.0, std::abs(first[v][c] + sum[v][c] / taken));
-          // Of the mean of `share.step` passes.
-          enough = enough && variance <= wanted * wanted * taken * share.step;
-        }
-      if (enough) break;
-    }
-    other.seed = shading::hashOf(settings.seed ^ shading::hashOf(static_cast<std::uint32_t>(taken)));
-    const StochasticSums next = samplePixel(layers, pixel, other, masks, share);
-    noisy(next, value);
-    for (int v = 0; v < 2; ++v) {
-      const dvec3 apart = value[v] - first[v];  // so that nothing cancels
-      sum[v] += apart;
-      square[v] += apart * apart;
-    }
-    mean.light += next.light;
-    mean.unit += next.unit;
-    mean.added += next.added;
-    mean.empty += next.empty;
+  while (sets.wantsMore()) {
+    other.seed = seedOfSet(settings.seed, sets.taken());
+    sets.add(samplePixel(layers, pixel, other, masks, share));
   }
-  const double part = 1.0 / taken;
-  mean.light *= part;
-  mean.unit *= part;
-  mean.added *= part;
-  mean.empty *= part;
-  return mean;
+  taken = sets.taken();
+  return sets.mean();
 }
 
 glm::dvec3 stochasticLight(const StochasticSums& sums, const glm::dvec3& hidden, const StochasticSettings& settings) {
-  const bool corrected =
-      settings.variant == Variant::alpha || (settings.variant == Variant::depth && settings.corrected);
+  const bool corrected = isCorrected(settings);
   dvec3 light = sums.added;
   for (int c = 0; c < 3; ++c) {
     if (!corrected)
@@ -198,77 +164,105 @@ StochasticMean::StochasticMean(int width, int height, const StochasticSettings& 
       added_(light_),
       hidden_(light_) {}
 
-bool StochasticMean::exactBackground() const {
-  return settings_.variant == Variant::alpha || (settings_.variant == Variant::depth && settings_.corrected);
+StochasticMean::StochasticMean(const DeepOpaque& opaque, const StochasticSettings& settings, int passes)
+    : StochasticMean(static_cast<int>(placesOf(opaque)), 1, settings, passes) {
+  opaque_ = &opaque;
 }
 
-void StochasticMean::put(int x, int y, const StochasticSums& sums, const glm::vec4& solid, float frontZ, Veil& veil) {
+bool StochasticMean::exactBackground() const {
+  return isCorrected(settings_);
+}
+
+StochasticSums StochasticMean::sampled(int pass, glm::ivec2 pixel, std::vector<MethodLayer>& layers) {
+  int sets = 1;
+  const StochasticSums sums = settings_.adaptive > 0.0
+                                  ? samplePixelAdaptively(layers, pixel, settings_, *masks_, {pass, passes_}, sets)
+                                  : samplePixel(layers, pixel, settings_, *masks_, {pass, passes_});
+  if (!layers.empty()) {
+    samplesTaken_ += static_cast<std::uint64_t>(sets) * static_cast<std::uint64_t>(settings_.samples / passes_);
+    ++pixelsSampled_;
+  }
+  return sums;
+}
+
+void StochasticMean::put(std::size_t place, const StochasticSums& sums, const glm::vec4& solid, float frontZ,
+                         std::size_t at, Veil& veil) {
   const auto share = static_cast<float>(1.0 / passes_);
   const bool hasSolid = std::isfinite(solid.a);
-  light_.at(x, y) += share * glm::vec3(sums.light);
-  unit_.at(x, y) += share * glm::vec3(sums.unit);
-  added_.at(x, y) += share * glm::vec3(sums.added);
-  hidden_.at(x, y) += share * glm::vec3(dvec3(1.0) - sums.beta);
+  light_[place] += share * glm::vec3(sums.light);
+  unit_[place] += share * glm::vec3(sums.unit);
+  added_[place] += share * glm::vec3(sums.added);
+  hidden_[place] += share * glm::vec3(dvec3(1.0) - sums.beta);
   const glm::vec3 shows = glm::vec3(exactBackground() ? sums.beta : sums.empty);
-  veil.light.at(x, y) = hasSolid ? shows * glm::vec3(solid) : glm::vec3(0.0f);
-  veil.transmission.at(x, y) = hasSolid ? glm::vec3(0.0f) : shows;
-  veil.frontZ.at(x, y) = std::min(frontZ, solid.a);
-  veil.touched.at(x, y) = 1;
+  veil.light[at] = hasSolid ? shows * glm::vec3(solid) : glm::vec3(0.0f);
+  veil.transmission[at] = hasSolid ? glm::vec3(0.0f) : shows;
+  veil.frontZ[at] = std::min(frontZ, solid.a);
+  veil.touched[at] = 1;
 }
 
 void StochasticMean::add(int pass, const FragmentLists& lists, const Window& data, Veil& veil) {
-  const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0;
+  const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0, width = lists.window.width();
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     std::vector<MethodLayer> layers;
-    std::uint64_t samples = 0, pixels = 0;
     for (int y = rows.begin(); y != rows.end(); ++y)
-      for (int x = 0; x < lists.window.width(); ++x) {
-        const auto pixel =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
+      for (int x = 0; x < width; ++x) {
+        const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
         const glm::vec4 solid = lists.solid.at(x, y);
         layersOf(lists, pixel, solid.a, layers);
         if (layers.empty() && !std::isfinite(solid.a)) continue;
-        const glm::ivec2 at(lists.window.x0 + x, lists.window.y0 + y);
-        int sets = 1;
-        const StochasticSums sums = settings_.adaptive > 0.0
-                                        ? samplePixelAdaptively(layers, at, settings_, *masks_, {pass, passes_}, sets)
-                                        : samplePixel(layers, at, settings_, *masks_, {pass, passes_});
-        if (!layers.empty()) {
-          samples += static_cast<std::uint64_t>(sets) * static_cast<std::uint64_t>(settings_.samples / passes_);
-          ++pixels;
-        }
-        put(left + x, top + y, sums, solid, layers.empty() ? solid.a : layers.front().record->z, veil);
+        const StochasticSums sums = sampled(pass, {lists.window.x0 + x, lists.window.y0 + y}, layers);
+        const std::size_t at = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(light_.width()) +
+                               static_cast<std::size_t>(left + x);
+        put(at, sums, solid, layers.empty() ? solid.a : layers.front().record->z, at, veil);
       }
-    samplesTaken_ += samples;
-    pixelsSampled_ += pixels;
+  });
+}
+
+void StochasticMean::add(int pass, const HeldOutRow& row, Veil& veil) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, row.z.size(), 256), [&](const auto& entries) {
+    std::vector<MethodLayer> layers;
+    for (std::size_t entry = entries.begin(); entry != entries.end(); ++entry) {
+      const glm::vec4 solid = row.lists.solid[entry];
+      layersOf(row.lists, entry, solid.a, layers);
+      if (layers.empty() && !std::isfinite(solid.a)) continue;
+      const StochasticSums sums = sampled(pass, row.pixel[entry], layers);
+      put(row.place[entry], sums, solid, layers.empty() ? solid.a : layers.front().record->z, entry, veil);
+    }
   });
 }
 
 void StochasticMean::add(const StochasticPlanes& planes, Veil& veil) {
-  for (int y = 0; y < planes.data.height(); ++y)
-    for (int x = 0; x < planes.data.width(); ++x) {
-      const glm::vec4& solid = planes.solid.at(x, y);
-      const float frontZ = planes.frontZ.at(x, y);
-      if (!std::isfinite(frontZ) && !std::isfinite(solid.a)) continue;
-      StochasticSums sums;
-      sums.light = planes.light.at(x, y);
-      sums.unit = planes.unit.at(x, y);
-      sums.added = planes.added.at(x, y);
-      sums.empty = planes.empty.at(x, y);
-      sums.beta = planes.beta.at(x, y);
-      put(x, y, sums, solid, frontZ, veil);
-    }
+  for (std::size_t i = 0; i < planes.solid.size(); ++i) {
+    const glm::vec4& solid = planes.solid[i];
+    const float frontZ = planes.frontZ[i];
+    if (!std::isfinite(frontZ) && !std::isfinite(solid.a)) continue;
+    StochasticSums sums;
+    sums.light = planes.light[i];
+    sums.unit = planes.unit[i];
+    sums.added = planes.added[i];
+    sums.empty = planes.empty[i];
+    sums.beta = planes.beta[i];
+    put(i, sums, solid, frontZ, i, veil);
+  }
 }
 
 void StochasticMean::finish(Veil& mean) const {
-  for (std::size_t i = 0; i < mean.touched.size(); ++i) {
-    if (!mean.touched[i]) continue;
+  const auto lightAt = [this](std::size_t i) {
     StochasticSums sums;
     sums.light = light_[i];
     sums.unit = unit_[i];
     sums.added = added_[i];
-    mean.light[i] += glm::vec3(stochasticLight(sums, dvec3(hidden_[i]), settings_));
+    return glm::vec3(stochasticLight(sums, dvec3(hidden_[i]), settings_));
+  };
+  if (!opaque_) {
+    for (std::size_t i = 0; i < mean.touched.size(); ++i)
+      if (mean.touched[i]) mean.light[i] += lightAt(i);
+    return;
   }
+  Image<glm::vec3> places(light_.width(), 1);
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = lightAt(i);
+  for (std::size_t i = 0; i < mean.touched.size(); ++i)
+    if (mean.touched[i]) mean.light[i] += sumOfPlaces(*opaque_, i, places);
 }
 
 }  // namespace pellucid

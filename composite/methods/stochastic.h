@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "composite/deep/deep_opaque.h"
 #include "composite/methods/method.h"
 #include "gbuffer/mask_table.h"
 #include "gbuffer/stochastic_planes.h"
@@ -29,6 +30,7 @@ struct StochasticSettings {
   static constexpr int kMostSamples = 4096;
 };
 
+bool isCorrected(const StochasticSettings& settings);  // its sums are scaled to the exact net opacity
 // Of sums a pixel, as a rasteriser keeps them: a depth per sample and channel, and the planes that are divided.
 int stochasticBits(const StochasticSettings& settings);
 int stochasticPasses(const StochasticSettings& settings);  // of geometry
@@ -67,9 +69,13 @@ glm::dvec3 stochasticLight(const StochasticSums& sums, const glm::dvec3& hidden,
 class StochasticMean {
  public:
   StochasticMean(int width, int height, const StochasticSettings& settings, int passes);
+  // For a deep picture, each of whose places holds layers out on its own: see composite/deep/deep_opaque.h.
+  StochasticMean(const DeepOpaque& opaque, const StochasticSettings& settings, int passes);
   // Adds pass `pass`. Writes transmission, solids, front depth and touched of the lists' window to `veil`, whose light
   // still lacks the layers'.
   void add(int pass, const FragmentLists& lists, const Window& data, Veil& veil);
+  // The same of the row of a deep picture; `veil` is the row's. Samples of a pixel share their masks.
+  void add(int pass, const HeldOutRow& row, Veil& veil);
   // The same, sampled already.
   void add(const StochasticPlanes& planes, Veil& veil);
   // Adds the layers' light to the mean of those veils.
@@ -80,11 +86,16 @@ class StochasticMean {
 
  private:
   bool exactBackground() const;
-  void put(int x, int y, const StochasticSums& sums, const glm::vec4& solid, float frontZ, Veil& veil);
+  StochasticSums sampled(int pass, glm::ivec2 pixel, std::vector<MethodLayer>& layers);
+  //   place   in the sums of all passes
+  //   at      in the veil
+  void put(std::size_t place, const StochasticSums& sums, const glm::vec4& solid, float frontZ, std::size_t at,
+           Veil& veil);
 
   StochasticSettings settings_;
   int passes_;
   std::shared_ptr<const MaskTable> masks_;
+  const DeepOpaque* opaque_ = nullptr;  // of a deep picture
   Image<glm::vec3> light_, unit_, added_, hidden_;
   std::atomic<std::uint64_t> samplesTaken_ = 0, pixelsSampled_ = 0;
 };

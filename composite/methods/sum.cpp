@@ -4,14 +4,17 @@
 
 namespace pellucid {
 
+LayerMix sumOf(const glm::dvec3& light, const glm::dvec3& opacity) {
+  return {light, glm::max(glm::dvec3(1.0) - opacity, glm::dvec3(0.0))};
+}
+
 LayerMix mixSum(const std::vector<MethodLayer>& layers, const MethodChoice&) {
-  LayerMix mix;
+  glm::dvec3 light(0.0), passed(1.0);
   for (const MethodLayer& layer : layers) {
-    mix.light += layer.light;
-    mix.transmission -= layer.opacity;
+    light += layer.light;
+    passed -= layer.opacity;
   }
-  mix.transmission = glm::max(mix.transmission, glm::dvec3(0.0));
-  return mix;
+  return {light, glm::max(passed, glm::dvec3(0.0))};
 }
 
 }  // namespace pellucid

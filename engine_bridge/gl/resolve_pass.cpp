@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/program.h"
 #include "gbuffer/errors.h"
 #include "shaders/spread_pyramid.h"
@@ -101,7 +100,6 @@ struct ResolvePass::Impl {
       glScissor(0, part.z, part.x, part.y);
       glUniform1i(level, k);
       glDrawArrays(GL_TRIANGLES, 0, 3);
-      gl::fences().mark();
       glTextureBarrier();
     }
     glDisable(GL_SCISSOR_TEST);
@@ -141,6 +139,7 @@ void ResolvePass::draw(const ResolveTextures& textures, int width, int height, f
   std::vector<std::string> defines;
   if (textures.refraction) defines.emplace_back("SCATTER");
   if (textures.dispersion) defines.emplace_back("DISPERSION");
+  if (settings.published) defines.emplace_back("DECODED_PUBLISHED");
   const GLuint program = impl_->use("gl/resolve.frag", defines).name.name();
   glUniform1i(glGetUniformLocation(program, "modulateSelf"), settings.selfModulation ? 1 : 0);
   glUniform3i(glGetUniformLocation(program, "lookup"), settings.kernel, settings.exact ? 1 : 0, levels);
@@ -148,7 +147,6 @@ void ResolvePass::draw(const ResolveTextures& textures, int width, int height, f
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  gl::fences().mark();
   glUseProgram(0);
   gl::checkGl("resolving");
 }

@@ -12,6 +12,7 @@ struct DeviceResolveSettings {
   bool selfModulation = false;                 // PT17 eq. 14
   int kernel = shading::PLD_DIFFUSE_GAUSSIAN;  // PLD_DIFFUSE_*
   bool exact = false;                          // every tap of the Gaussian, at a cost that grows as D^2
+  bool published = false;                      // the planes are those of records in the published tier
 };
 
 // GL names of 2D textures of one size, row 0 the top row. The planes of MODEL section 3 as shaders/shared packs them:

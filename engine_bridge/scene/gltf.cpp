@@ -226,6 +226,7 @@ class FileLoader {
       instance.primitive = primitive;
       instance.node = node.name;
       instance.identity = identityOf(fileIndex_, node.index, drawn.mesh, i);
+      instance.file = static_cast<int>(fileIndex_);
       if (copy > 0) instance.identity = mixBits(instance.identity, static_cast<std::uint32_t>(copy));
       scene_.instances.push_back(std::move(instance));
     }

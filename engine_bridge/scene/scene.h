@@ -112,6 +112,7 @@ struct Instance {
   int primitive = 0;           // index into Scene::primitives
   std::string node;            // for messages
   std::uint32_t identity = 0;  // hash of file, node and mesh
+  int file = 0;                // which of the files that were loaded, in their order
 };
 
 enum class LightKind { directional, point, spot };

@@ -1,5 +1,6 @@
 #include "engine_bridge/scene/triangle_source.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace pellucid {
@@ -41,6 +42,24 @@ ColourRange coloursOf(const Primitive& primitive) {
   ColourRange range;
   for (const Vertex& vertex : primitive.vertices) range.add(vertex.colour);
   return range;
+}
+
+Scene decodedScene(const Scene& scene) {
+  Scene decoded = scene;
+  VertexPlaces places;
+  TriangleBatch batch;
+  constexpr std::size_t kBatch = 1024;
+  for (Primitive& primitive : decoded.primitives) {
+    if (!primitive.streamed || primitive.points) continue;
+    for (std::size_t first = 0; first < primitive.streamed->triangles(); first += kBatch) {
+      primitive.streamed->read(first, std::min(kBatch, primitive.streamed->triangles() - first), places, batch);
+      const auto base = static_cast<std::uint32_t>(primitive.vertices.size());
+      primitive.vertices.insert(primitive.vertices.end(), batch.vertices.begin(), batch.vertices.end());
+      for (const std::uint32_t corner : batch.indices) primitive.indices.push_back(base + corner);
+    }
+    primitive.streamed = nullptr;
+  }
+  return decoded;
 }
 
 }  // namespace pellucid

@@ -56,4 +56,8 @@ void readTriangles(const Primitive& primitive, std::size_t first, std::size_t co
                    TriangleBatch& batch);
 ColourRange coloursOf(const Primitive& primitive);
 
+// The scene with the triangles that lie in their files decoded, but for particles: what rays need of a scene that is
+// streamed otherwise. Throws what TriangleSource::read throws.
+Scene decodedScene(const Scene& scene);
+
 }  // namespace pellucid

@@ -1,4 +1,5 @@
 // Sums to what transparency does to a pixel, as records keep it.
+#include "shared/published.glsl"
 #include "gl/resolve_here.glsl"
 
 layout(location = 0) out vec4 light;         // of the layers, premultiplied; 0 untouched, 1 shows its own background, 2 another

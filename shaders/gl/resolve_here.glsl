@@ -1,6 +1,7 @@
 #pragma once
 // Sums to what transparency does to a pixel: fetch and resolve through the shared model. Defines say how the sums lie:
 // GREY, LEAN, PUBLISHED, FRONT_TAIL, else one plane per sum; and which planes there are: NO_LIGHT, SCATTER, DISPERSION.
+// DECODED_PUBLISHED: planes of records in the published tier, whose 8 bits are decoded: depth holds beta.
 // NEAREST_SAMPLERS: textures are looked up at their nearest texels. LOW_OVER: of gl/front_sums.glsl; DIFFUSE_IN_ALPHA, NO_DIFFUSE: of
 // gl/sums_output.glsl.
 #include "gl/lookup.glsl"
@@ -122,6 +123,8 @@ VeilHere veilAt(ivec2 pixel) {
   if (!any && !hidesAll) return veil;
 #ifdef PUBLISHED
   veil.resolved = resolvePublished(sums.numerator, sums.denominator, sums.beta, modulateSelf != 0);
+#elif defined(DECODED_PUBLISHED)
+  veil.resolved = resolvePublished(sums.numerator, sums.denominator.r, sums.depth, modulateSelf != 0);
 #else
   veil.resolved = resolveSums(sums, modulateSelf != 0);
 #endif

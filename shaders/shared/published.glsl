@@ -60,14 +60,11 @@ PLD_FN float fromSnorm(int steps) {
   return max(x, -1.0f);
 }
 
-PLD_FN PublishedTargets packPublished(Layer layer, Scatter scatter, WeightSettings settings) {
-  vec3 o = opacityOf(layer.coverage, layer.transmission);
-  float netOpacity = meanOf(o);
-  float w = layerWeight(settings, layer.z, netOpacity);
-  precise vec3 numerator = w * layer.radiance;
-  precise float denominator = w * netOpacity;
+//   numerator, denominator  w C and w o, o being the mean over channels
+//   o                       opacity per channel
+PLD_FN PublishedTargets publishedTargets(vec3 numerator, float denominator, vec3 o, Scatter scatter) {
   precise float share = scatter.variance / (PLD_SCATTER_UNIT * PLD_SCATTER_UNIT);
-  precise vec2 delta = (netOpacity / PLD_SCATTER_UNIT) * scatter.offset;
+  precise vec2 delta = (meanOf(o) / PLD_SCATTER_UNIT) * scatter.offset;
   if (scatter.variance > 0.0f) share = max(share, PLD_LEAST_SHARE);
   int clamped = 0;
   if (numerator.r > PLD_HALF_LARGEST) clamped += 1;
@@ -83,6 +80,15 @@ PLD_FN PublishedTargets packPublished(Layer layer, Scatter scatter, WeightSettin
   targets.delta = clamp(delta, vec2(-1.0f), vec2(1.0f));
   targets.clamped = clamped;
   return targets;
+}
+
+PLD_FN PublishedTargets packPublished(Layer layer, Scatter scatter, WeightSettings settings) {
+  vec3 o = opacityOf(layer.coverage, layer.transmission);
+  float netOpacity = meanOf(o);
+  float w = layerWeight(settings, layer.z, netOpacity);
+  precise vec3 numerator = w * layer.radiance;
+  precise float denominator = w * netOpacity;
+  return publishedTargets(numerator, denominator, o, scatter);
 }
 
 //   radiance, beta, delta  as texture reads return them: beta.rgb is the product of 1 - alpha (1 - t)

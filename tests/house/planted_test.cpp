@@ -27,6 +27,9 @@ TEST(Planted, EveryArrowBackwardsIsFound) {
   EXPECT_EQ(arrows("engine_bridge/gl/pass.cpp", "#include \"composite/fold.h\"\n"), 1u);
   EXPECT_EQ(arrows("composite/fold.cpp", "#include \"engine_bridge/scene/scene.h\"\n"), 1u);
   EXPECT_EQ(arrows("composite/study/table.cpp", "#include \"composite/cli/options.h\"\n"), 1u);
+  EXPECT_EQ(arrows("composite/fold.cpp", "#include \"composite/pipeline/plan.h\"\n"), 1u);
+  EXPECT_EQ(arrows("engine_bridge/gl/pass.cpp", "#include \"composite/pipeline/plan.h\"\n"), 1u);
+  EXPECT_EQ(arrows("composite/pipeline/plan.cpp", "#include \"composite/cli/options.h\"\n"), 1u);
   EXPECT_EQ(arrows("composite/cli/app.cpp", "#include \"tests/support/random.h\"\n"), 1u);
   EXPECT_EQ(arrows("composite/cli/app.cpp", "#include \"samples/generate/glb.h\"\n"), 1u);
   EXPECT_EQ(arrows("samples/bars/bars.cpp", "#include \"tests/support/random.h\"\n"), 1u);

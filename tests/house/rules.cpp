@@ -18,11 +18,15 @@ const std::map<std::string, Names> kArrows = {
     {"gbuffer", {"gbuffer", "shaders"}},
     {"engine_bridge", {"engine_bridge", "gbuffer", "shaders"}},
     {"composite", {"composite", "gbuffer", "shaders"}},
-    {"composite/cli", {"composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
-    {"samples", {"samples", "composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"composite/pipeline", {"composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"composite/cli", {"composite/cli", "composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"samples", {"samples", "composite/cli", "composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
     // Benchmarks measure what tests build: they share tests/support.
-    {"bench", {"bench", "tests", "samples", "composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
-    {"tests", {"tests", "samples", "composite/cli", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"bench",
+     {"bench", "tests", "samples", "composite/cli", "composite/pipeline", "composite", "engine_bridge", "gbuffer",
+      "shaders"}},
+    {"tests",
+     {"tests", "samples", "composite/cli", "composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
 };
 
 struct Library {
@@ -92,7 +96,8 @@ const std::vector<std::string>& rooms() {
 }
 
 std::string roomOf(const std::string& path) {
-  if (isBelow(path, "composite/cli")) return "composite/cli";
+  for (const char* room : {"composite/cli", "composite/pipeline"})
+    if (isBelow(path, room)) return room;
   return path.substr(0, path.find('/'));
 }
 

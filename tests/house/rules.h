@@ -9,11 +9,13 @@ namespace pellucid::test {
 
 using Violations = std::vector<std::string>;
 
-// The folders that hold code, and the one a file belongs to: "composite/cli" is a room of its own.
+// The folders that hold code, and the one a file belongs to: "composite/cli" and "composite/pipeline" are rooms
+// of their own.
 const std::vector<std::string>& rooms();
 std::string roomOf(const std::string& path);
 
-// Includes against the arrows: shaders <- gbuffer <- engine_bridge, composite <- composite/cli <- samples, tests.
+// Includes against the arrows: shaders <- gbuffer <- engine_bridge, composite <-
+// composite/pipeline <- composite/cli <- samples, tests.
 Violations againstArrows(const SourceFile& file);
 // Libraries that only one room may know: GL and EGL, Embree, OpenEXR.
 Violations libraryOutsideItsRoom(const SourceFile& file);

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "composite/cli/device_resolve.h"
+#include "composite/pipeline/resolve_step.h"
 #include "tests/scatter/scene.h"
 #include "tests/support/random.h"
 
@@ -91,7 +91,7 @@ void expectSameBits(const Shot& shot, const ResolveSettings& settings, const Loo
   GlContext context;
   ResolvePass device(context);
   const Veil cpu = resolveOver(shot.planes, settings, lookup, shot.gbuffer);
-  const Veil gl = cli::resolveSums(&device, shot.planes, settings, lookup, shot.gbuffer);
+  const Veil gl = resolveSums(&device, shot.planes, settings, lookup, shot.gbuffer);
   Difference difference;
   compare(cpu.light, gl.light, difference);
   compare(cpu.transmission, gl.transmission, difference);
@@ -132,7 +132,7 @@ TEST(ResolveGl, ServesOneSizeAfterAnother) {
   for (const int width : {33, 130, 57}) {
     const Shot shot(width, 40, 12.0f, true);
     const Veil cpu = resolveOver(shot.planes, {}, {}, shot.gbuffer);
-    const Veil gl = cli::resolveSums(&device, shot.planes, {}, {}, shot.gbuffer);
+    const Veil gl = resolveSums(&device, shot.planes, {}, {}, shot.gbuffer);
     EXPECT_EQ(std::memcmp(cpu.applied.data(), gl.applied.data(), cpu.applied.size() * sizeof(glm::vec4)), 0) << width;
   }
 }

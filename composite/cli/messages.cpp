@@ -1,0 +1,21 @@
+#include "composite/cli/messages.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace pellucid::cli {
+
+void setUpMessages() {
+  if (!spdlog::get("pellucid")) spdlog::set_default_logger(spdlog::stderr_logger_mt("pellucid"));
+  spdlog::set_pattern("pellucid: %v");
+}
+
+void say(const std::string& note) {
+  spdlog::info("{}", note);
+}
+
+void say(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) say(note);
+}
+
+}  // namespace pellucid::cli

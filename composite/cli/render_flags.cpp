@@ -1,0 +1,142 @@
+#include "composite/cli/render_flags.h"
+
+#include <fmt/format.h>
+
+#include "gbuffer/errors.h"
+
+namespace pellucid::cli {
+namespace {
+
+struct NamedLayer {
+  const char* text;
+  LayerName name;
+};
+constexpr NamedLayer kLayers[] = {
+    {"transparent", LayerName::transparent},
+    {"transmission", LayerName::transmission},
+    {"depth", LayerName::depth},
+    {"D", LayerName::diffusion},
+    {"delta", LayerName::delta},
+    {"weight", LayerName::weight},
+    {"count", LayerName::count},
+};
+
+void addCommon(CLI::App& verb, RenderFlags& flags) {
+  verb.add_option("opaque", flags.opaque, "EXR with beauty and depth")->required();
+  verb.add_option("scenes", flags.inputs, "glTF, GLB or deep EXR with the transparent things")->required();
+  flags.read.addTo(verb);
+  flags.scene.addTo(verb);
+  flags.shadow.addTo(verb);
+  flags.fog.addTo(verb);
+  verb.add_option("--particle-light", flags.particleLight,
+                  "Texels along the longest edge of what tells particles how much of the lamps reaches them; 0: all "
+                  "of it")
+      ->check(CLI::Range(0, 512))
+      ->capture_default_str();
+}
+
+void addWays(CLI::App& verb, RenderFlags& flags) {
+  verb.add_option("--tolerance", flags.tolerance,
+                  "Error to live with, guaranteed for every pixel and channel: E times the larger of 1 and the value")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option("--systems", flags.systems, "A pass of its own for every input file or named node, sorted coarsely")
+      ->check(CLI::IsMember({"off", "file", "node"}))
+      ->capture_default_str();
+  verb.add_flag("--measure", flags.measure, "Also composite the sorted truth and print the error against it");
+}
+
+}  // namespace
+
+std::vector<LayerName> layerNames(const std::vector<std::string>& layers) {
+  std::vector<LayerName> names;
+  for (const std::string& text : layers)
+    for (const NamedLayer& layer : kLayers)
+      if (text == layer.text) names.push_back(layer.name);
+  return names;
+}
+
+void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
+  std::vector<std::string> names;
+  for (const NamedLayer& layer : kLayers) names.emplace_back(layer.text);
+  verb.add_option("--layers", layers,
+                  "Layers to add: transparent, transmission, depth; for debugging D, delta, weight, count")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+}
+
+void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
+  addCommon(verb, *this);
+  foliage.addTo(verb, what.keepsRimsApart);
+  if (what.weighs && what.precision) method.addTo(verb, what.listsToo);
+  if (what.weighs && !what.precision) method.addWeightTo(verb, true);
+  if (what.bends) scatter.addTo(verb);
+  if (what.weighs)
+    lowResolutionOption_ =
+        verb.add_option("--low-res", lowResolution,
+                        "Draw materials marked lowResolution at 1/N of the resolution; 1 draws them like the others")
+            ->check(CLI::IsMember({1, 2, 4, 8}))
+            ->capture_default_str();
+  passes = what.defaultPasses;
+  if (what.passes)
+    verb.add_option("--aa", passes, "Jittered passes, averaged; 1 samples pixel centres")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+  if (what.listsToo && what.weighs) stochastic.addTo(verb);
+  if (what.listsToo && what.weighs && what.precision) addWays(verb, *this);
+  if (!what.resolves) return;
+  lookup.addTo(verb);
+  lookup.addResolverTo(verb);
+  selfModulation.addTo(verb);
+  if (what.precision) addLayersOption(verb, layers);
+}
+
+void RenderFlags::paintInto(Request& request) const {
+  method.into(request);
+  request.passes = passes;
+  shadow.into(request);
+  stochastic.into(request);
+  const bool sums = paintsBy<PaintSums>(request);
+  const auto* listed = std::get_if<PaintListed>(&request.paint);
+  if (tolerance) {
+    if (!sums && !(listed && (listed->method.name == "weighted" || listed->method.name == "blended")))
+      throw UsageError(
+          fmt::format("--tolerance: --method {} has no certificate, expected phenomenological, weighted or blended",
+                      request.method));
+    if (systems != "off")
+      throw UsageError("--tolerance: found it with --systems, expected one of them: a tolerance sorts what needs it");
+    if (listed && listed->method.name == "blended") {
+      if (request.sums.weight || request.sums.fitWeight)
+        throw UsageError("--weight: found it with --method blended: its layers are not weighed");
+      request.sums.weight = shading::WeightSettings{shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 3.0f};
+    }
+    request.paint = PaintWithin{*tolerance};
+  }
+  if (systems == "off") return;
+  if (!sums && !listed)
+    throw UsageError(fmt::format("--systems: --method {} has no use for passes per system, expected a blended method",
+                                 request.method));
+  PaintSystems painted{systems == "file" ? SystemRule::file : SystemRule::node, std::nullopt};
+  if (listed) painted.method = listed->method;
+  request.paint = painted;
+}
+
+Request RenderFlags::request() const {
+  Request request;
+  request.shot.opaque = opaque;
+  request.shot.inputs = inputs;
+  request.shot.read = read.options();
+  scene.into(request);
+  paintInto(request);
+  scatter.into(request);
+  lookup.into(request);
+  foliage.into(request);
+  fog.into(request);
+  request.particleLight = particleLight;
+  request.sums.selfModulation = selfModulation.value();
+  if (lowResolutionOption_ && lowResolutionOption_->count() > 0) request.lowResolution.factor = lowResolution;
+  request.measure = measure;
+  request.layers = layerNames(layers);
+  return request;
+}
+
+}  // namespace pellucid::cli

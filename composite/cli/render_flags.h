@@ -1,0 +1,56 @@
+// The flags of every verb that renders, as one request.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "composite/cli/fog_flags.h"
+#include "composite/cli/foliage_flags.h"
+#include "composite/cli/options.h"
+#include "composite/cli/scatter_flags.h"
+#include "composite/cli/shadow_flags.h"
+#include "composite/cli/stochastic_flags.h"
+
+namespace pellucid::cli {
+
+// What a verb does with the layers, and so which flags it has.
+struct RenderVerb {
+  bool weighs = true;     // --method, --weight and what else decides between methods
+  bool listsToo = true;   // methods that have no sums
+  bool precision = true;  // one tier
+  bool passes = true;     // --aa with one number
+  bool bends = true;      // --refract and --diffusion
+  bool resolves = true;   // lookups, --resolve, --self-modulation and --layers
+  bool keepsRimsApart = false;
+  int defaultPasses = 1;
+};
+
+struct RenderFlags {
+  std::string opaque, systems = "off";
+  std::vector<std::string> inputs, layers;
+  ReadFlags read;
+  SceneFlags scene;
+  MethodFlags method;
+  ScatterFlags scatter;
+  LookupFlags lookup;
+  FoliageFlags foliage;
+  ShadowFlags shadow;
+  FogFlags fog;
+  StochasticFlags stochastic;
+  SelfModulationFlag selfModulation;
+  int passes = 1, particleLight = 64, lowResolution = LowResolutionRequest::kDefault;
+  std::optional<double> tolerance;
+  bool measure = false;
+
+  void addTo(CLI::App& verb, const RenderVerb& what);
+  Request request() const;  // throws UsageError
+
+ private:
+  void paintInto(Request& request) const;
+  const CLI::Option* lowResolutionOption_ = nullptr;
+};
+
+std::vector<LayerName> layerNames(const std::vector<std::string>& layers);
+void addLayersOption(CLI::App& verb, std::vector<std::string>& layers);
+
+}  // namespace pellucid::cli

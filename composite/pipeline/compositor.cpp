@@ -1,0 +1,182 @@
+#include "composite/pipeline/compositor.h"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "composite/antialias.h"
+#include "composite/pipeline/fit.h"
+#include "composite/pipeline/foliage_step.h"
+#include "composite/pipeline/output_layers.h"
+#include "composite/pipeline/sums.h"
+#include "gbuffer/weight_text.h"
+
+namespace pellucid {
+namespace {
+
+// Requests of one light may share it.
+bool sameLight(const Request& a, const Request& b) {
+  return a.passes == b.passes && a.particleLight == b.particleLight && a.shadows == b.shadows && a.fog == b.fog;
+}
+
+}  // namespace
+
+struct Compositor::Run {
+  Plan plan;
+  const Lighting* lighting = nullptr;
+  PassSettings pass;  // with the light
+  std::unique_ptr<LayerSources> sources;
+};
+
+Compositor::Compositor(const Request& request, std::function<void(const std::string&)> sink)
+    : journal_(std::move(sink)), device_(request.device) {
+  validate(request);
+  shot_ = loadShot(request.shot, meetsRays(request), journal_);
+  facts_ = factsOf(*shot_);
+}
+
+Compositor::~Compositor() = default;
+
+Plan Compositor::plan(const Request& request) const {
+  validate(request);
+  return planFor(request, facts_);
+}
+
+TransparentPass* Compositor::triangles() {
+  if (shot_->hasScene && !triangles_) {
+    GlContext& context = device_.context(journal_);
+    triangles_ = journal_.time("upload", [&] {
+      return std::make_unique<TransparentPass>(context, shot_->scene, shot_->opaque.gbuffer, shot_->camera);
+    });
+  }
+  return triangles_.get();
+}
+
+const Lighting& Compositor::lightOf(const Request& request) {
+  if (!lighting_ || !sameLight(lit_, request)) {
+    lighting_ = lightShot(request, *shot_, device_, journal_);
+    lit_ = request;
+  }
+  return *lighting_;
+}
+
+Compositor::Run Compositor::prepare(const Request& request) {
+  Run run;
+  run.plan = plan(request);
+  journal_.note(run.plan.notes);
+  run.lighting = &lightOf(request);
+  run.pass = run.plan.pass;
+  run.lighting->applyTo(run.pass, *shot_);
+  TransparentPass* pass = triangles();
+  run.sources = std::make_unique<LayerSources>(pass);
+  if (!shot_->deep.empty()) run.sources->join(deepFiles(shot_->deep));
+  if (run.lighting->fog) run.sources->join(fogRuns());
+  if (pass) placeOccluders(request.foliage, run.pass, *pass, *run.lighting->picture.gbuffer, shot_->camera, journal_);
+  if (run.plan.fitsWeight) {
+    RunCounts unused;
+    const PaintContext context{run.plan, *shot_, run.lighting->picture, *run.sources, device_, journal_, unused};
+    run.pass.weight = run.plan.pass.weight = fittedWeight(context, run.pass);
+  }
+  return run;
+}
+
+Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal,
+                       RunCounts& counts) {
+  const PaintContext context{plan, *shot_, run.lighting->picture, *run.sources, device_, journal, counts};
+  const std::unique_ptr<Painter> painter = makePainter(context);
+  VeilMean mean;
+  for (int i = 0; i < plan.passes; ++i) {
+    Veil veil = painter->paint(samplePass(pass, i, plan.passes), i);
+    journal.time("average", [&] { mean.add(std::move(veil)); });
+  }
+  return journal.time("average", [&] {
+    Veil veil = mean.finish();
+    painter->finish(veil);
+    return veil;
+  });
+}
+
+Result Compositor::run(const Request& request) {
+  const Run run = prepare(request);
+  Result result;
+  result.plan = run.plan;
+  result.veil = paint(run.plan, run.pass, run, journal_, result.counts);
+  const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
+  result.dataWindow = gbuffer.data;
+  result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
+  const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
+  for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
+  if (request.measure) {
+    Journal truth = journal_.beside();
+    RunCounts unused;
+    const Veil veil = paint(truthOf(run.plan), run.pass, run, truth, unused);
+    result.error = measureError(result.picture.rgba, compose(veil, gbuffer).rgba);
+    for (const auto& [name, seconds] : truth.stages.seconds()) journal_.stages.add("truth: " + name, seconds);
+  }
+  result.layers = veilLayers(request.layers, result.veil);
+  result.layers.insert(result.layers.end(), run.lighting->shadows.layers.begin(), run.lighting->shadows.layers.end());
+  if (wantsPlanes(request.layers)) {
+    RunCounts unused;
+    const Plan sums = sumsPlanOf(run.plan, facts_);
+    const PaintContext context{sums, *shot_, run.lighting->picture, *run.sources, device_, journal_, unused};
+    const OitPlanes planes = journal_.time("debug planes", [&] { return sumsOf(context, run.pass); });
+    result.layers.push_back(planeLayer(request.layers, planes));
+  }
+  for (const auto& file : shot_->deep) journal_.note(file->notes());
+  result.stages = std::exchange(journal_.stages, Stages());
+  result.device = device_.description();
+  return result;
+}
+
+shading::WeightSettings Compositor::fitWeight(Request request) {
+  request.sums.fitWeight = true;
+  return prepare(request).plan.pass.weight;
+}
+
+RunCounts Compositor::accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each) {
+  const Run run = prepare(request);
+  RunCounts counts;
+  const Plan sums = sumsPlanOf(run.plan, facts_);
+  const PaintContext context{sums, *shot_, run.lighting->picture, *run.sources, device_, journal_, counts};
+  for (int i = 0; i < run.plan.passes; ++i) {
+    PassSettings sample = samplePass(run.pass, i, run.plan.passes);
+    sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
+    sample.normalisation = sums.pass.normalisation;
+    PassPlanes made;
+    made.planes = journal_.time("transparent pass", [&] { return sumsOf(context, sample); });
+    made.planes.info.method = run.plan.method;
+    if (request.foliage.rule == FoliageRule::apart && triangles())
+      made.rims = journal_.time("rims", [&] { return triangles()->rims(fullResolutionPart(sums, sample)); });
+    if (!made.rims.empty()) ++counts.passes;
+    each(std::move(made));
+  }
+  for (const auto& file : shot_->deep) journal_.note(file->notes());
+  return counts;
+}
+
+RunCounts Compositor::listFragments(const Request& request, const ListSink& sink) {
+  const Run run = prepare(request);
+  RunCounts counts;
+  journal_.time("lists and write", [&] {
+    run.sources->each({run.pass, run.lighting->picture, VolumeRule::split}, [&](const FragmentLists& lists) {
+      counts.fragments += lists.fragments.size();
+      sink(lists);
+    });
+  });
+  for (const auto& file : shot_->deep) journal_.note(file->notes());
+  return counts;
+}
+
+std::vector<std::string> Compositor::write(const std::string& path, const Result& result) const {
+  const std::map<std::string, std::string> attributes{{"pellucid:method", result.plan.method},
+                                                      {"pellucid:weight", weightText(result.plan.pass.weight)}};
+  if (!shot_->deepOpaque)
+    return writePicture(path, shot_->opaque, result.picture.rgba, result.picture.touched, result.layers, attributes);
+  const GBuffer& gbuffer = shot_->opaque.gbuffer;
+  std::vector<ExtraLayer> layers{beautyLayer(result.picture.rgba)};
+  layers.insert(layers.end(), result.layers.begin(), result.layers.end());
+  return writeLayers(path, gbuffer.display, gbuffer.data, layers, attributes,
+                     shot_->hasScene ? &shot_->camera : nullptr);
+}
+
+}  // namespace pellucid

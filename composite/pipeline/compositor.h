@@ -1,0 +1,74 @@
+// The whole of Pellucid behind one class: a shot is loaded once, then any number of requests are carried out on it.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "composite/pipeline/lighting.h"
+#include "composite/pipeline/painter.h"
+#include "composite/pipeline/plan.h"
+#include "composite/pipeline/result.h"
+#include "composite/pipeline/validate.h"
+#include "gbuffer/rim_planes.h"
+
+namespace pellucid {
+
+// The sums of one jittered pass, and what rims get from around where that is kept apart.
+struct PassPlanes {
+  OitPlanes planes;
+  RimPlanes rims;
+};
+
+// Not for several threads at once: it holds a GL context, which is current on the thread that first used it.
+class Compositor {
+ public:
+  // Validates the request before any file is opened, and loads its shot. Throws UsageError, InputError, MeaningError
+  // and ResourceError, each with one sentence that says what was found and what was expected.
+  //   sink  takes notes, one sentence at a time: what was inferred and how to say otherwise
+  explicit Compositor(const Request& request, std::function<void(const std::string&)> sink = nullptr);
+  ~Compositor();
+
+  const Shot& shot() const { return *shot_; }
+  const ShotFacts& facts() const { return facts_; }
+  // What run() would do. Of a request only what is not in ShotRequest may differ from the one that was loaded.
+  Plan plan(const Request& request) const;
+
+  // Works out the light of a request, which run() does where nobody has: shadows, fog, the light in particles.
+  void light(const Request& request) {
+    lightOf(request);
+    journal_.stages = Stages();
+  }
+  // The weight that --weight auto would take.
+  shading::WeightSettings fitWeight(Request request);
+  // Composites. The picture's bits do not depend on what was run before.
+  Result run(const Request& request);
+  // The sums alone, pass by pass in order, as `resolve` takes them.
+  //   each  takes them as they are made
+  RunCounts accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each);
+  // Every fragment at pixel centres, in windows that together cover the data window.
+  RunCounts listFragments(const Request& request, const ListSink& sink);
+  // The opaque picture with the result's beauty in it, and its layers. Returns the notes.
+  std::vector<std::string> write(const std::string& path, const Result& result) const;
+
+  Journal& journal() { return journal_; }
+  std::string device() const { return device_.description(); }
+
+ private:
+  struct Run;  // what a request's steps share
+  const Lighting& lightOf(const Request& request);
+  TransparentPass* triangles();
+  Run prepare(const Request& request);
+  Veil paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal, RunCounts& counts);
+
+  Journal journal_;
+  Device device_;
+  std::unique_ptr<Shot> shot_;
+  ShotFacts facts_;
+  std::unique_ptr<TransparentPass> triangles_;
+  // The light of the last request; requests that differ in nothing that lights share it.
+  std::unique_ptr<Lighting> lighting_;
+  Request lit_;
+};
+
+}  // namespace pellucid

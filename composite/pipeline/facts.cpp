@@ -1,0 +1,30 @@
+#include "composite/pipeline/facts.h"
+
+#include <algorithm>
+
+#include "engine_bridge/scene/blocks.h"
+
+namespace pellucid {
+
+ShotFacts factsOf(const Shot& shot) {
+  ShotFacts facts;
+  facts.width = shot.opaque.gbuffer.data.width();
+  facts.height = shot.opaque.gbuffer.data.height();
+  facts.hasScene = shot.hasScene;
+  facts.hasCamera = shot.hasCamera;
+  facts.deepPicture = shot.deepOpaque != nullptr;
+  facts.deepFiles = shot.deep.size();
+  facts.deepScatters =
+      std::any_of(shot.deep.begin(), shot.deep.end(), [](const auto& source) { return source->mayScatter(); });
+  facts.marksLowResolution =
+      std::any_of(shot.scene.materials.begin(), shot.scene.materials.end(),
+                  [](const Material& material) { return material.lowResolution && material.transparent(); });
+  facts.lights = static_cast<std::size_t>(std::count_if(shot.scene.lights.begin(), shot.scene.lights.end(),
+                                                        [](const Light& light) { return shines(light); }));
+  facts.rangeNear = shot.camera.rangeNear;
+  facts.rangeFar = shot.camera.rangeFar;
+  for (const Primitive& primitive : shot.scene.primitives) facts.triangles += primitive.triangles();
+  return facts;
+}
+
+}  // namespace pellucid

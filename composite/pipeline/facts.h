@@ -1,0 +1,24 @@
+// What a plan needs to know of a loaded shot, and nothing of its pixels.
+#pragma once
+#include <cstddef>
+
+#include "composite/pipeline/shot.h"
+
+namespace pellucid {
+
+struct ShotFacts {
+  int width = 0, height = 0;  // of the data window
+  bool hasScene = true;       // glTF among the inputs
+  bool hasCamera = true;
+  bool deepPicture = false;                // each sample of the opaque picture holds layers out on its own
+  std::size_t deepFiles = 0;               // with transparent samples
+  bool deepScatters = false;               // they say how they refract and diffuse
+  bool marksLowResolution = false;         // some transparent material is to be drawn at low resolution
+  std::size_t lights = 0;                  // that shine
+  double rangeNear = 0.0, rangeFar = 0.0;  // of the camera, metres; 0 where it has none
+  std::size_t triangles = 0;               // of one copy of every primitive
+};
+
+ShotFacts factsOf(const Shot& shot);
+
+}  // namespace pellucid

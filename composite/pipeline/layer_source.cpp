@@ -1,0 +1,40 @@
+#include "composite/pipeline/layer_source.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace pellucid {
+namespace {
+
+FragmentLists emptyLists(const Window& window) {
+  FragmentLists lists;
+  lists.window = window;
+  lists.solid =
+      Image<glm::vec4>(window.width(), window.height(), glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity()));
+  lists.offsets.assign(lists.solid.size() + 1, 0);
+  return lists;
+}
+
+}  // namespace
+
+void LayerSources::each(const SourceView& view, const ListSink& sink) const {
+  ListSink chain = sink;
+  for (auto source = joined_.rbegin(); source != joined_.rend(); ++source)
+    chain = (*source)->into(view, std::move(chain));
+  const Window& data = view.picture.gbuffer->data;
+  if (!pass_) {
+    chain(emptyLists(data));
+    return;
+  }
+  PassSettings listed = view.settings;
+  const bool rows = std::any_of(joined_.begin(), joined_.end(), [](const auto& source) { return source->wantsRows(); });
+  if (rows) listed.tile = std::max(data.width(), data.height());
+  pass_->fragments(listed, chain);
+}
+
+bool LayerSources::mayScatter(const PassSettings& settings) const {
+  return (pass_ && pass_->scatters(settings)) ||
+         std::any_of(joined_.begin(), joined_.end(), [](const auto& source) { return source->mayScatter(); });
+}
+
+}  // namespace pellucid

@@ -1,0 +1,38 @@
+#include "composite/pipeline/lighting.h"
+
+#include "composite/pipeline/fog_step.h"
+
+namespace pellucid {
+
+bool meetsRays(const Request& request) {
+  return request.shadows.byRays();
+}
+
+void Lighting::applyTo(ShadingSettings& settings, const Shot& shot) const {
+  settings.surroundings = shot.surroundings;
+  settings.environment = shot.environment;
+  settings.shadows = shadows.maps;
+  settings.shadowRays = surfaces;
+  settings.particleLight = particles;
+  settings.fog = fog;
+}
+
+std::unique_ptr<Lighting> lightShot(const Request& request, const Shot& shot, Device& device, Journal& journal) {
+  auto lighting = std::make_unique<Lighting>();
+  lighting->shadows =
+      journal.time("shadows", [&] { return castShadows(request.shadows, shot, request.passes, device, journal); });
+  lighting->picture = {&shot.opaque.gbuffer, shot.deepOpaque.get()};
+  if (!lighting->shadows.beauty.empty()) {
+    lighting->relit = shot.opaque.gbuffer;
+    lighting->relit.beauty = std::move(lighting->shadows.beauty);
+    lighting->picture.gbuffer = &lighting->relit;
+  }
+  if (lighting->shadows.deepOpaque) lighting->picture.deepOpaque = lighting->shadows.deepOpaque.get();
+  Air air(shot, lighting->shadows.maps, journal);
+  lighting->fog = placeFogOf(request.fog, shot, request.shot.read.metresPerUnit, air, journal);
+  if (shot.hasScene) lighting->particles = lightInParticles(shot, air, request.particleLight, journal);
+  lighting->surfaces = journal.time("shadows", [&] { return surfaceLight(lighting->shadows, shot); });
+  return lighting;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,71 @@
+#include "composite/pipeline/low_layers.h"
+
+#include <limits>
+
+#include "composite/fold.h"
+#include "composite/list_order.h"
+#include "composite/pipeline/sums.h"
+
+namespace pellucid {
+namespace {
+
+// Opacity's mean depth of each texel's layers; of what only adds light its nearest.
+void meanDepths(const FragmentLists& lists, Image<float>& meanZ) {
+  std::size_t pixel = 0;
+  for (int y = lists.window.y0; y < lists.window.y1; ++y)
+    for (int x = lists.window.x0; x < lists.window.x1; ++x, ++pixel) {
+      double hidden = 0.0, depth = 0.0;
+      float nearest = std::numeric_limits<float>::max();
+      const auto add = [&](double opacity, float z) {
+        hidden += opacity;
+        depth += opacity * static_cast<double>(z);
+        nearest = std::min(nearest, z);
+      };
+      for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
+        const Fragment& fragment = lists.fragments[i];
+        if (takesPart(fragment, lists.solid[pixel]))
+          add(static_cast<double>(shading::meanOf(fragment.coverage * (glm::vec3(1.0f) - fragment.transmission))),
+              fragment.z);
+      }
+      if (lists.solid[pixel].a < std::numeric_limits<float>::infinity()) add(1.0, lists.solid[pixel].a);
+      meanZ.at(x, y) = hidden > 0.0 ? static_cast<float>(depth / hidden) : nearest;
+    }
+}
+
+// Solids of the layers of full resolution, for what stands behind them at low resolution.
+Image<glm::vec4> solidsOf(TransparentPass& pass, const PassSettings& full) {
+  const Image<float> z = pass.solidDepth(full);
+  Image<glm::vec4> solid(z.width(), z.height());
+  for (std::size_t i = 0; i < z.size(); ++i) solid[i] = glm::vec4(0.0f, 0.0f, 0.0f, z[i]);
+  return solid;
+}
+
+}  // namespace
+
+LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettings& sample, int pass, Mixer& mixer,
+                                   PassStatistics& statistics) {
+  const GBuffer& gbuffer = *context.picture.gbuffer;
+  TransparentPass& triangles = *context.sources.triangles();
+  const Image<glm::vec4> solids = solidsOf(triangles, fullResolutionPart(context.plan, sample));
+  const LowView view = lowViewOf(gbuffer, solids, context.shot.camera, context.plan.lowResolution);
+  const PassSettings part = lowResolutionPart(sample);
+  const Window& texels = view.gbuffer.data;
+  Veil veil(texels.width(), texels.height());
+  Image<float> meanZ(texels.width(), texels.height(), 0.0f);
+  OitPlanes scatter = emptyPlanes(texels, texels);
+  {
+    const DrawnOver over(triangles, view, gbuffer, context.shot.camera);
+    triangles.fragments(part, [&](const FragmentLists& given) {
+      FragmentLists lists = given;
+      orderByDepthAndBits(lists);
+      foldScattering(lists, scatter);
+      meanDepths(lists, meanZ);
+      mixer.mixTexels({part, pass, texels}, lists, veil);
+    });
+    statistics = triangles.statistics();
+  }
+  const OitPlanes low = planesOfVeil(veil, meanZ, view, scatter.scatters() ? &scatter : nullptr);
+  return LowResolutionFragments(low, view, sample.sample, gbuffer.data);
+}
+
+}  // namespace pellucid

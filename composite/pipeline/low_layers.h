@@ -1,0 +1,13 @@
+// What a mixer makes of the materials that are drawn at low resolution: a layer for each pixel.
+#pragma once
+#include "composite/low_resolution.h"
+#include "composite/pipeline/painters/lists_painter.h"
+
+namespace pellucid {
+
+// Draws them over a view of the picture, composites each texel by the mixer, and brings the result to full resolution.
+//   statistics  of that pass
+LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettings& sample, int pass, Mixer& mixer,
+                                   PassStatistics& statistics);
+
+}  // namespace pellucid

@@ -1,0 +1,89 @@
+#include "composite/pipeline/output_layers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid {
+namespace {
+
+template <class Value>
+Image<float> planeOf(const Window& size, Value value) {
+  Image<float> image(size.width(), size.height());
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] = value(i);
+  return image;
+}
+
+constexpr const char* kColours[] = {"R", "G", "B"};
+
+}  // namespace
+
+ExtraLayer beautyLayer(const Image<glm::vec4>& rgba) {
+  ExtraLayer layer;
+  const char* names[] = {"R", "G", "B", "A"};
+  for (int c = 0; c < 4; ++c) {
+    Image<float> plane(rgba.width(), rgba.height());
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = rgba[i][c];
+    layer.channels.emplace_back(names[c], std::move(plane));
+  }
+  return layer;
+}
+
+std::vector<ExtraLayer> veilLayers(const std::vector<LayerName>& layers, const Veil& veil) {
+  const Window size{0, 0, veil.touched.width(), veil.touched.height()};
+  std::vector<ExtraLayer> result;
+  for (const LayerName name : layers) {
+    ExtraLayer layer;
+    if (name == LayerName::transparent) {
+      layer.name = "transparent";
+      for (int c = 0; c < 3; ++c)
+        layer.channels.emplace_back(kColours[c], planeOf(size, [&](std::size_t i) { return veil.light[i][c]; }));
+      layer.channels.emplace_back("A", planeOf(size, [&](std::size_t i) {
+                                    return veil.touched[i] ? shading::alphaOver(veil.transmission[i], 0.0f) : 0.0f;
+                                  }));
+    } else if (name == LayerName::transmission) {
+      layer.name = "transmission";
+      for (int c = 0; c < 3; ++c)
+        layer.channels.emplace_back(kColours[c], planeOf(size, [&](std::size_t i) { return veil.transmission[i][c]; }));
+    } else if (name == LayerName::depth) {
+      layer.name = "transparent";
+      layer.channels.emplace_back("Z", planeOf(size, [&](std::size_t i) { return veil.frontZ[i]; }));
+    }
+    if (!layer.channels.empty()) result.push_back(std::move(layer));
+  }
+  return result;
+}
+
+bool wantsPlanes(const std::vector<LayerName>& layers) {
+  return std::any_of(layers.begin(), layers.end(), [](LayerName name) {
+    return name == LayerName::diffusion || name == LayerName::delta || name == LayerName::weight ||
+           name == LayerName::count;
+  });
+}
+
+ExtraLayer planeLayer(const std::vector<LayerName>& layers, const OitPlanes& planes) {
+  ExtraLayer debug{"oit", {}};
+  const auto meanOffset = [&](std::size_t i, int component) {
+    return planes.scatters() && planes.refraction[i].z > 0.0f ? planes.refraction[i][component] / planes.refraction[i].z
+                                                              : 0.0f;
+  };
+  const auto add = [&](const char* channel, auto value) {
+    debug.channels.emplace_back(channel, planeOf(planes.data, value));
+  };
+  for (const LayerName name : layers) {
+    if (name == LayerName::diffusion)
+      add("D", [&](std::size_t i) { return planes.scatters() ? std::sqrt(planes.refraction[i].w) : 0.0f; });
+    if (name == LayerName::delta) {
+      add("delta.X", [&](std::size_t i) { return meanOffset(i, 0); });
+      add("delta.Y", [&](std::size_t i) { return meanOffset(i, 1); });
+    }
+    if (name == LayerName::weight)  // mean weight of the layers: sum of w o over sum of o
+      add("weight", [&](std::size_t i) {
+        const float opacity = shading::meanOf(glm::vec3(planes.opacity[i]));
+        return opacity > 0.0f ? shading::meanOf(glm::vec3(planes.weight[i])) / opacity : 0.0f;
+      });
+    if (name == LayerName::count) add("count", [&](std::size_t i) { return planes.weight[i].a; });
+  }
+  return debug;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,33 @@
+// Stochastic transparency from fragment lists.
+#include "composite/pipeline/painters/lists_painter.h"
+
+namespace pellucid {
+namespace {
+
+class SamplesMixer : public Mixer {
+ public:
+  SamplesMixer(const PaintContext& context, const StochasticSettings& settings)
+      : mean_(context.plan.heldOut
+                  ? std::make_unique<StochasticMean>(*context.picture.deepOpaque, settings, context.plan.passes)
+                  : std::make_unique<StochasticMean>(context.picture.gbuffer->data.width(),
+                                                     context.picture.gbuffer->data.height(), settings,
+                                                     context.plan.passes)) {}
+  void mix(const Mixed& mixed, const FragmentLists& lists, Veil& veil) override {
+    if (mixed.row)
+      mean_->add(mixed.pass, *mixed.row, veil);
+    else
+      mean_->add(mixed.pass, lists, mixed.data, veil);
+  }
+  void finish(Veil& mean) override { mean_->finish(mean); }
+
+ private:
+  std::unique_ptr<StochasticMean> mean_;  // of all passes: masks are stratified across them
+};
+
+}  // namespace
+
+std::unique_ptr<Painter> samplesPainter(const PaintContext& context) {
+  return listsPainter(context, std::make_unique<SamplesMixer>(context, context.plan.as<PaintSamples>()->settings));
+}
+
+}  // namespace pellucid

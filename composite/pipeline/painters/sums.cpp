@@ -1,0 +1,59 @@
+// The order-independent sums of each pass, resolved. Over a deep picture each of its samples has sums of its own.
+#include <algorithm>
+
+#include "composite/fog.h"
+#include "composite/pipeline/painters/lists_painter.h"
+#include "composite/pipeline/resolve_step.h"
+#include "composite/pipeline/sums.h"
+
+namespace pellucid {
+namespace {
+
+class SumsPainter : public Painter {
+ public:
+  explicit SumsPainter(const PaintContext& context) : context_(context) {}
+
+  Veil paint(const PassSettings& sample, int) override {
+    Journal& journal = context_.journal;
+    const bool drawn = context_.plan.route == Route::drawnSums;
+    OitPlanes planes =
+        journal.time(drawn ? "transparent pass" : "lists and sums", [&] { return sumsOf(context_, sample); });
+    return journal.time("resolve", [&] {
+      ResolvePass* device = context_.plan.resolvesOnDevice ? &context_.device.resolver(journal) : nullptr;
+      return resolveSums(device, std::move(planes), context_.plan.resolve, context_.plan.lookup,
+                         *context_.picture.gbuffer);
+    });
+  }
+
+ private:
+  PaintContext context_;
+};
+
+// The sums of the entries of a deep picture's row.
+class SumsMixer : public Mixer {
+ public:
+  explicit SumsMixer(const PaintContext& context) : context_(context) {}
+  bool fogBeside() const override { return true; }
+
+  void mix(const Mixed& mixed, const FragmentLists& lists, Veil& veil) override {
+    const Plan& plan = context_.plan;
+    OitPlanes planes = emptySums(plan, mixed.sample, lists.window, lists.window);
+    foldInto(plan, lists, mixed.sample, planes, context_.counts.clamps);
+    if (mixed.sample.fog && mixed.row)
+      addFog(*mixed.sample.fog, *context_.picture.gbuffer, mixed.sample.sample, *mixed.row, planes,
+             &context_.counts.clamps);
+    veil = resolve(planes, plan.resolve);
+  }
+
+ private:
+  PaintContext context_;
+};
+
+}  // namespace
+
+std::unique_ptr<Painter> sumsPainter(const PaintContext& context) {
+  if (context.plan.heldOut) return listsPainter(context, std::make_unique<SumsMixer>(context));
+  return std::make_unique<SumsPainter>(context);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,196 @@
+#include "composite/pipeline/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "composite/antialias.h"
+#include "composite/pipeline/foliage_step.h"
+#include "gbuffer/accum.h"
+#include "gbuffer/errors.h"
+#include "gbuffer/weight_text.h"
+
+namespace pellucid {
+namespace {
+
+constexpr double kNearDefault = 0.1, kFarOverNear = 1e4;  // of a camera that states none, metres
+// A pixel's veil, its mean and the picture; then the planes of a pass as floats.
+constexpr std::uint64_t kVeilBytes = 2 * 60 + 16, kPlaneBytes = 128, kScatterBytes = 52;
+
+// The range comes from the request, else from the camera.
+shading::WeightSettings weightOf(const SumsRequest& sums, const ShotFacts& facts) {
+  shading::WeightSettings weight =
+      sums.weight.value_or(shading::WeightSettings{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f});
+  double rangeNear = facts.rangeNear > 0 ? facts.rangeNear : kNearDefault;
+  double rangeFar = facts.rangeFar > rangeNear ? facts.rangeFar : rangeNear * kFarOverNear;
+  if (sums.weightRange) std::tie(rangeNear, rangeFar) = *sums.weightRange;
+  weight.rangeNear = static_cast<float>(rangeNear);
+  weight.rangeFar = static_cast<float>(rangeFar);
+  return weight;
+}
+
+PassSettings passOf(const Request& request, const ShotFacts& facts) {
+  PassSettings pass;
+  static_cast<ResidencySettings&>(pass) = request.residency;
+  pass.filter = request.filter;
+  pass.mask = request.mask;
+  pass.scatter = request.scatter;
+  pass.weight = weightOf(request.sums, facts);
+  const bool published = request.tier == Tier::published;
+  pass.tier = published ? SumsTier::published : SumsTier::float32;
+  pass.normalisation = request.sums.normalisation.value_or(published ? shading::PLD_NORMALISE_PUBLISHED
+                                                                     : shading::PLD_NORMALISE_SPECTRAL);
+  applyFoliage(request.foliage, pass.occlusion);
+  return pass;
+}
+
+// Listed methods that are the transparent pass's own sums need no lists.
+void chooseSums(Plan& plan) {
+  const auto* listed = plan.as<PaintListed>();
+  if (!listed) return;
+  const std::string& name = listed->method.name;
+  if (name == "blended") {
+    plan.pass.weight.kind = shading::PLD_WEIGHT_UNIFORM;
+    plan.pass.normalisation = shading::PLD_NORMALISE_SPECTRAL;
+  }
+  if (name == "weighted" || name == "blended") plan.paint = PaintSums{};
+}
+
+Route routeOf(const Plan& plan, const ShotFacts& facts) {
+  if (plan.as<PaintSystems>()) return Route::systems;
+  if (const auto* samples = plan.as<PaintSamples>()) return samples->onDevice ? Route::samplesOnDevice : Route::lists;
+  if (!plan.as<PaintSums>() || plan.heldOut) return Route::lists;
+  return plan.isExact() || plan.deepFiles || !facts.hasScene ? Route::foldedSums : Route::drawnSums;
+}
+
+// What the device cannot sample is sampled on the CPU: the same picture but for rounding.
+void keepOffDevice(Plan& plan, const ShotFacts& facts) {
+  auto* samples = std::get_if<PaintSamples>(&plan.paint);
+  if (!samples || !samples->onDevice) return;
+  const char* why = plan.deepFiles || !facts.hasScene ? "deep samples are no triangles"
+                    : plan.fog                        ? "fog is no triangle"
+                    : plan.heldOut                    ? "a deep picture holds layers out sample by sample"
+                    : plan.lowResolution > 1          ? "layers at low resolution are no triangles"
+                                                      : nullptr;
+  if (!why) return;
+  samples->onDevice = false;
+  plan.notes.push_back(
+      fmt::format("--sampled-on gl: {}, so the CPU samples them: the same picture but for rounding", why));
+}
+
+int lowResolutionOf(const Request& request, const ShotFacts& facts) {
+  const bool asked = request.lowResolution.factor.value_or(1) > 1;
+  if (asked && !facts.marksLowResolution)
+    throw UsageError(
+        fmt::format("--low-res: found {}, but no transparent material is marked; expected --set "
+                    "MATERIAL.lowResolution=true",
+                    *request.lowResolution.factor));
+  return facts.marksLowResolution ? request.lowResolution.factor.value_or(LowResolutionRequest::kDefault) : 1;
+}
+
+}  // namespace
+
+const char* nameOf(Route route) {
+  switch (route) {
+    case Route::drawnSums:
+      return "sums that the device blends";
+    case Route::foldedSums:
+      return "sums that are added from fragment lists";
+    case Route::lists:
+      return "fragment lists";
+    case Route::samplesOnDevice:
+      return "samples that the device draws";
+    case Route::systems:
+      break;
+  }
+  return "a pass for each system";
+}
+
+Plan planFor(const Request& request, const ShotFacts& facts) {
+  Plan plan;
+  plan.method = request.method;
+  plan.paint = request.paint;
+  plan.tier = request.tier;
+  plan.pass = passOf(request, facts);
+  plan.fitsWeight = request.sums.fitWeight;
+  plan.resolve.selfModulation = request.sums.selfModulation.value_or(plan.isPublished());
+  plan.lookup = request.lookup;
+  plan.resolvesOnDevice = request.resolveOnDevice;
+  plan.heldOut = facts.deepPicture;
+  plan.deepFiles = facts.deepFiles > 0;
+  plan.fog = request.fog.on();
+  plan.passes = request.passes;
+  plan.lowResolution = lowResolutionOf(request, facts);
+  chooseSums(plan);
+  keepOffDevice(plan, facts);
+  plan.route = routeOf(plan, facts);
+  if (plan.resolvesOnDevice && plan.heldOut) {
+    plan.resolvesOnDevice = false;
+    plan.notes.emplace_back("--resolve gl: each sample of a deep picture has sums of its own, which the CPU resolves");
+  }
+  const auto pixels = static_cast<std::uint64_t>(facts.width) * static_cast<std::uint64_t>(facts.height);
+  plan.bytes = pixels * (kVeilBytes + kPlaneBytes + kScatterBytes) + plan.pass.budgetBytes;
+  return plan;
+}
+
+Plan truthOf(const Plan& plan) {
+  Plan truth = plan;
+  truth.paint = PaintSorted{};
+  truth.route = Route::lists;
+  truth.fitsWeight = false;
+  truth.resolvesOnDevice = false;
+  truth.notes.clear();
+  return truth;
+}
+
+Plan sumsPlanOf(const Plan& plan, const ShotFacts& facts) {
+  Plan sums = plan;
+  const auto* listed = plan.as<PaintListed>();
+  if (listed && formulaOf(listed->method.name) != SumFormula::mean) {  // of plain sums, without a weight
+    sums.pass.weight.kind = shading::PLD_WEIGHT_UNIFORM;
+    sums.pass.normalisation = shading::PLD_NORMALISE_SPECTRAL;
+  }
+  sums.paint = PaintSums{};
+  sums.heldOut = false;
+  sums.route = routeOf(sums, facts);
+  return sums;
+}
+
+PassSettings samplePass(const PassSettings& pass, int index, int count) {
+  PassSettings sample = pass;
+  sample.sample = samplePosition(index, count);
+  sample.footprint = 1.0f / std::sqrt(static_cast<float>(count));
+  return sample;
+}
+
+std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
+  std::vector<std::string> lines;
+  const auto say = [&](const char* what, const std::string& how) {
+    lines.push_back(fmt::format("{:<12}{}", what, how));
+  };
+  say("method", plan.method);
+  say("painted by", nameOf(plan.route));
+  say("tier", plan.route == Route::lists && !plan.isExact() ? "double precision, pixel by pixel"
+                                                            : std::string(tierRow(plan.tier).name));
+  std::string layers = facts.hasScene ? fmt::format("{} triangles", facts.triangles) : "";
+  const auto add = [&](const std::string& part) { layers += (layers.empty() ? "" : ", ") + part; };
+  if (facts.deepFiles) add(fmt::format("{} deep {}", facts.deepFiles, facts.deepFiles == 1 ? "file" : "files"));
+  if (plan.fog) add("fog");
+  if (plan.lowResolution > 1) add(fmt::format("marked materials at 1/{} of the resolution", plan.lowResolution));
+  say("layers", layers);
+  if (plan.as<PaintSums>() || plan.as<PaintWithin>() || plan.as<PaintSystems>())
+    say("weight", plan.fitsWeight ? "fitted to the sorted truth on probe pixels" : weightText(plan.pass.weight));
+  say("picture", fmt::format("{}x{}, {}", facts.width, facts.height,
+                             plan.heldOut ? "deep: each sample holds layers out" : "one depth a pixel"));
+  say("passes", fmt::format("{}, each {}", plan.passes,
+                            plan.route == Route::drawnSums || plan.route == Route::foldedSums
+                                ? plan.resolvesOnDevice ? "resolved on the device" : "resolved on the CPU"
+                                : "composited on the CPU"));
+  say("memory", fmt::format("about {} MiB besides the picture", plan.bytes >> 20));
+  for (const std::string& note : plan.notes) say("note", note);
+  return lines;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,115 @@
+#include "composite/pipeline/refusals.h"
+
+#include "shaders/weights.h"
+
+namespace pellucid {
+namespace {
+
+// Whose layers are weighed, and how they are averaged, by what the request says.
+bool weighs(const Request& request) {
+  if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->weighs;
+  if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
+    return !systems->method || systems->method->method->weighs;
+  return paintsBy<PaintSums>(request) || paintsBy<PaintWithin>(request);
+}
+bool normalises(const Request& request) {
+  if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->normalises;
+  if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
+    return !systems->method || systems->method->method->normalises;
+  return paintsBy<PaintSums>(request) || paintsBy<PaintWithin>(request);
+}
+// The transparent pass's own sums: phenomenological, weighted and blended.
+bool hasSums(const Request& request) {
+  if (const auto* listed = std::get_if<PaintListed>(&request.paint))
+    return listed->method.name == "weighted" || listed->method.name == "blended";
+  return paintsBy<PaintSums>(request);
+}
+bool takesExact(const Request& request) {
+  if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->takesExact;
+  if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
+    return !systems->method || systems->method->method->takesExact;
+  return true;
+}
+bool readsRange(const SumsRequest& sums) {
+  if (sums.fitWeight || !sums.weight) return true;
+  const DepthWeight* row = depthWeightOf(sums.weight->kind);
+  return row && row->readsRange;
+}
+bool asksPlanesOf(const Request& request) {
+  for (const LayerName name : request.layers)
+    if (name == LayerName::depth || name == LayerName::weight || name == LayerName::count) return true;
+  return false;
+}
+bool tracesSamples(const Request& request) {
+  const auto* samples = std::get_if<PaintSamples>(&request.paint);
+  return samples && samples->settings.samples % request.passes != 0;
+}
+
+}  // namespace
+
+const std::vector<Refusal>& refusals() {
+  static const std::vector<Refusal> table{
+      {"--weight", "--method {}", "its layers are not weighed",
+       [](const Request& r) { return (r.sums.weight || r.sums.fitWeight) && !weighs(r); }},
+      {"--weight-range", "--method {}", "its layers are not weighed",
+       [](const Request& r) { return r.sums.weightRange && !weighs(r); }},
+      {"--weight-range", "a weight without a range", "only eq5, eq10 and eq10z read one",
+       [](const Request& r) { return r.sums.weightRange && weighs(r) && !readsRange(r.sums); }},
+      {"--normalisation", "--method {}", "it averages in a way of its own, or not at all",
+       [](const Request& r) { return r.sums.normalisation && !normalises(r); }},
+      {"--self-modulation", "--method {}", "it corrects the weighted sum of the transparent pass, which is not made",
+       [](const Request& r) { return r.sums.selfModulation && !hasSums(r); }},
+      {"--precision published", "--method {}", "its targets hold the phenomenological sums alone",
+       [](const Request& r) { return r.tier == Tier::published && (!paintsBy<PaintSums>(r)); }},
+      {"--precision published", "--normalisation spectral", "its targets have one denominator for all channels",
+       [](const Request& r) {
+         return r.tier == Tier::published && r.sums.normalisation == shading::PLD_NORMALISE_SPECTRAL;
+       }},
+      {"--precision exact", "--method unsorted",
+       "it composites in the order submitted, which exact promises not to show",
+       [](const Request& r) { return r.tier == Tier::exact && !takesExact(r); }},
+      {"--tolerance", "--normalisation published",
+       "it has no certificate: one denominator for all channels has no bound",
+       [](const Request& r) {
+         return paintsBy<PaintWithin>(r) && r.sums.normalisation == shading::PLD_NORMALISE_PUBLISHED;
+       }},
+      {"--resolve gl", "--method {}", "it has no sums to resolve",
+       [](const Request& r) { return r.resolveOnDevice && !hasSums(r); }},
+      {"--samples", "--aa", "every pass holds as many samples: expected a multiple of --aa", tracesSamples},
+      {"--gather exact", "--diffusion-kernel disc", "the disc has one gather, and its taps are few",
+       [](const Request& r) { return r.lookup.exact && r.lookup.kernel == shading::PLD_DIFFUSE_DISC; }},
+      {"--layers depth, weight, count", "--precision published", "its targets do not hold them",
+       [](const Request& r) { return r.tier == Tier::published && asksPlanesOf(r); }},
+      {"--occlusion apart", "--precision published", "rims are summed in floats",
+       [](const Request& r) { return r.tier == Tier::published && r.foliage.rule == FoliageRule::apart; }},
+  };
+  return table;
+}
+
+void dropUnread(Request& request) {
+  SumsRequest& sums = request.sums;
+  if (!weighs(request)) {
+    sums.weight.reset();
+    sums.weightRange.reset();
+    sums.fitWeight = false;
+  }
+  const bool published = request.tier == Tier::published;
+  if (!normalises(request) || (published && sums.normalisation == shading::PLD_NORMALISE_SPECTRAL))
+    sums.normalisation.reset();
+  if (!hasSums(request)) {
+    sums.selfModulation.reset();
+    request.resolveOnDevice = false;
+  }
+}
+
+void setWeight(Request& request, const shading::WeightSettings& weight) {
+  if (!weighs(request)) return;
+  request.sums.fitWeight = false;
+  request.sums.weight = weight;
+  if (readsRange(request.sums))
+    request.sums.weightRange = {static_cast<double>(weight.rangeNear), static_cast<double>(weight.rangeFar)};
+  else
+    request.sums.weightRange.reset();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,24 @@
+// Combinations that mean nothing, in one table: the README's and the program's.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "composite/pipeline/request.h"
+
+namespace pellucid {
+
+struct Refusal {
+  const char* flag;  // what cannot be honoured
+  const char* with;  // beside what; {} stands for the method that was asked for
+  const char* why;
+  bool (*applies)(const Request& request);
+};
+
+const std::vector<Refusal>& refusals();
+
+// Takes from a request what its method does not read: of settings that several requests share.
+void dropUnread(Request& request);
+// Where it is read: this weight, instead of fitting one.
+void setWeight(Request& request, const shading::WeightSettings& weight);
+
+}  // namespace pellucid

@@ -1,0 +1,155 @@
+// What is asked of the pipeline, typed: nothing here has been opened or looked up yet. An optional that is empty means
+// that the caller left the choice to the plan.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "composite/gather.h"
+#include "composite/methods/method.h"
+#include "composite/methods/stochastic.h"
+#include "engine_bridge/scene/gltf.h"
+#include "engine_bridge/scene/pass_settings.h"
+#include "gbuffer/medium.h"
+#include "gbuffer/opaque_io.h"
+#include "gbuffer/tiers.h"
+
+namespace pellucid {
+
+// What paints: one of these, and a file in painters/ or a mixer for each.
+struct PaintSums {};    // the order-independent sums of the transparent pass, resolved
+struct PaintSorted {};  // sorted compositing in double precision: the truth
+struct PaintListed {    // a method of composite/methods/
+  ChosenMethod method;
+};
+struct PaintSamples {  // stochastic transparency
+  StochasticSettings settings;
+  bool onDevice = false;
+};
+struct PaintWithin {       // the sums where they are proved to be good enough, the truth elsewhere
+  double tolerance = 0.0;  // times the larger of 1 and the value, every pixel and channel
+};
+enum class SystemRule { file, node };
+struct PaintSystems {  // a pass for every input file or named node, sorted coarsely: WB13 section 3.4
+  SystemRule rule = SystemRule::file;
+  std::optional<ChosenMethod> method;  // within a system; empty: the weighted sum
+};
+using Paint = std::variant<PaintSums, PaintSorted, PaintListed, PaintSamples, PaintWithin, PaintSystems>;
+
+// How layers are weighed and averaged, where the method reads it.
+struct SumsRequest {
+  std::optional<shading::WeightSettings> weight;         // kind and exponent; the range is below
+  bool fitWeight = false;                                // --weight auto: fitted to the truth on probe pixels
+  std::optional<std::pair<double, double>> weightRange;  // metres; else the camera's, else 0.1 to 1000
+  std::optional<int> normalisation;                      // PLD_NORMALISE_*
+  std::optional<bool> selfModulation;                    // PT17 eq. 14
+};
+
+struct NamedCamera {
+  std::string name;  // of the scene
+};
+struct PlacedCamera {
+  glm::dvec3 eye{0.0}, look{0.0, 0.0, -1.0}, up{0.0, 1.0, 0.0};  // world, metres
+  double fov = 0.0;                                              // vertical, degrees
+};
+// Nothing: the picture's own, else the scene's only one.
+using CameraChoice = std::variant<std::monostate, NamedCamera, PlacedCamera>;
+
+struct PictureOfSurroundings {
+  std::string path;  // lat-long EXR
+};
+// Nothing: the median of the sky's pixels. A colour is scene-linear radiance.
+using SurroundingsChoice = std::variant<std::monostate, glm::vec3, PictureOfSurroundings>;
+
+struct ShotRequest {
+  std::string opaque;               // EXR, flat or deep
+  std::vector<std::string> inputs;  // glTF, GLB and deep EXR with the transparent things
+  ReadOptions read;
+  SceneOptions scene;
+  CameraChoice camera;
+  SurroundingsChoice surroundings;
+};
+
+enum class ShadowSource { off, rays, raysOpaque, maps };  // raysOpaque: as if what covers half hid all
+enum class ShadowMapForm { variance, published, naive, stratified, corrected };
+struct ShadowRequest {
+  ShadowSource source = ShadowSource::off;
+  ShadowMapForm form = ShadowMapForm::variance;
+  std::optional<int> size;                                  // texels along an edge of a map as drawn
+  std::vector<std::pair<std::string, std::string>> layers;  // light's name, EXR layer with its part of the beauty
+  bool apply = false;                                       // without such layers: multiply the beauty
+  std::string views;                                        // EXR to write what the maps hold to, or ""
+  std::uint32_t seed = 0;                                   // of the maps' coins
+  bool on() const { return source != ShadowSource::off; }
+  bool byRays() const { return source == ShadowSource::rays || source == ShadowSource::raysOpaque; }
+  bool byMaps() const { return source == ShadowSource::maps; }
+  bool operator==(const ShadowRequest&) const = default;
+};
+
+struct FogText {
+  MediumSettings medium;
+  bool hasDensity = false;  // the text says how dense it is
+  int shafts = 96;          // texels along the longest edge of the light volume; 0: nothing stands before the lights
+  bool zUp = false;         // the grid's
+  bool operator==(const FogText&) const = default;
+};
+struct FogRequest {
+  std::optional<FogText> text;  // --fog key=value,...
+  std::string file;             // --fog FILE.json, or ""
+  std::string grid, gridName;   // --fog-grid FILE.vdb[:GRID], or ""
+  bool on() const { return text || !file.empty() || !grid.empty(); }
+  bool operator==(const FogRequest&) const = default;
+};
+
+// Ambient occlusion of cut-out leaves. apart: planes of what rims get from around, left to `resolve`.
+enum class FoliageRule { inferred, solid, off, apart };
+struct FoliageRequest {
+  FoliageRule rule = FoliageRule::inferred;
+  std::optional<int> form;            // PLD_OCCLUSION_*
+  std::optional<double> directShare;  // [0,1]
+  std::optional<bool> fromFile;       // the picture's AO channel where it has one; false: from depth
+  std::optional<double> radius;       // metres; else a tenth of the depth
+};
+
+struct LowResolutionRequest {
+  std::optional<int> factor;  // pixels per texel, in both axes: 1, 2, 4, 8; else 4
+  static constexpr int kDefault = 4;
+};
+
+// Extra layers of the output.
+enum class LayerName { transparent, transmission, depth, diffusion, delta, weight, count };
+
+struct Request {
+  ShotRequest shot;
+  std::string method = "phenomenological";  // as it was asked for: for headers and messages
+  Paint paint = PaintSums{};
+  Tier tier = Tier::float32;
+  SumsRequest sums;
+  int passes = 1;  // jittered, averaged
+  TextureFilter filter = TextureFilter::mipmap;
+  MaskEdge mask = MaskEdge::smooth;
+  ScatterSettings scatter;
+  ResidencySettings residency;
+  LookupSettings lookup;
+  bool resolveOnDevice = false;
+  LowResolutionRequest lowResolution;
+  FoliageRequest foliage;
+  ShadowRequest shadows;
+  FogRequest fog;
+  int particleLight =
+      64;                // texels along the longest edge of what tells particles of the lamps; 0: nothing is in the way
+  bool measure = false;  // composite the sorted truth too
+  std::vector<LayerName> layers;
+  int device = -1;  // EGL device; -1 takes the first
+};
+
+template <class Kind>
+bool paintsBy(const Request& request) {
+  return std::holds_alternative<Kind>(request.paint);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,41 @@
+// What a run hands back.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "composite/error.h"
+#include "composite/pipeline/journal.h"
+#include "composite/pipeline/plan.h"
+#include "composite/resolve.h"
+#include "composite/tolerance.h"
+#include "engine_bridge/gl/transparent_pass.h"
+
+namespace pellucid {
+
+struct RunCounts {
+  std::size_t triangles = 0, chunks = 0, tiles = 0, fragments = 0;
+  ToleranceCounts tolerance = {};
+  int bitsPerPixel = 0, solidBits = 0, passes = 0;
+  PublishedClamps clamps = {};
+  std::size_t shadowRays = 0;  // of all passes
+  double shadowSeconds = 0;
+  std::vector<std::string> pruned = {};
+
+  void add(const PassStatistics& statistics);  // what one pass did
+};
+
+struct Result {
+  Plan plan;          // as it was carried out: with the weight that was fitted
+  Window dataWindow;  // of all planes
+  Veil veil;
+  Picture picture;                       // touched: changed by layers or by shadows
+  std::vector<ExtraLayer> layers;        // `shadow`, and those that were asked for
+  std::optional<ErrorStatistics> error;  // against the sorted truth, when it was asked for
+  RunCounts counts;
+  Stages stages;
+  std::string device = "CPU";
+};
+
+}  // namespace pellucid

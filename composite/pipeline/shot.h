@@ -1,0 +1,45 @@
+// One shot, loaded: the opaque picture, the transparent scene, the camera, and the light around them.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "composite/deep/deep_opaque.h"
+#include "composite/deep/deep_source.h"
+#include "composite/pipeline/journal.h"
+#include "composite/pipeline/request.h"
+#include "engine_bridge/scene/surroundings.h"
+
+namespace pellucid {
+
+// Nothing of it changes once it is loaded; deep files keep their place in themselves as they are read.
+struct Shot {
+  OpaqueFile opaque;
+  Scene scene;
+  Camera camera;
+  glm::vec3 surroundings{0.0f};
+  std::shared_ptr<const Surroundings> environment;  // a picture of them, where a file was given
+  std::unique_ptr<DeepOpaque> deepOpaque;           // when the opaque picture is deep; `opaque` is what it flattens to
+  bool hasScene = true;                             // false when all transparent inputs are deep files
+  bool hasCamera = true;                            // false where deep files alone need none, and none was found
+  std::vector<std::string> geometry;                // the glTF files
+  std::vector<std::unique_ptr<DeepSource>> deep;    // transparent layers that come as deep EXR
+};
+
+// Reads every file once and decides on camera and surroundings, noting what was inferred. Throws what the readers
+// throw, and MeaningError when there is no camera, or more than one and none was named.
+//   traced  rays will meet the scene's triangles: they are decoded, whatever SceneOptions::streamBytes says
+std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal& journal);
+
+bool isExrName(const std::string& path);  // a deep file rather than glTF
+
+// The camera of a shot, by choice, file attribute or glTF, in this order.
+//   opaquePath  for messages
+Camera chooseCamera(const CameraChoice& choice, const GBuffer& gbuffer, const Scene& scene,
+                    const std::string& opaquePath);
+
+// Median colour of the pixels where nothing was hit: what the transparent things reflect when nobody says. Black
+// without such pixels.
+glm::vec3 medianSky(const GBuffer& gbuffer, std::size_t& pixels);
+
+}  // namespace pellucid

@@ -1,0 +1,24 @@
+// Fog as layers: what lies between two surfaces that follow one another in depth is one run.
+#include "composite/fog.h"
+#include "composite/pipeline/layer_source.h"
+
+namespace pellucid {
+namespace {
+
+class FogRuns : public LayerSource {
+ public:
+  const char* name() const override { return "fog"; }
+  ListSink into(const SourceView& view, ListSink next) override {
+    if (!view.settings.fog) return next;
+    return [&fog = *view.settings.fog, &picture = view.picture, sample = view.settings.sample, next = std::move(next)](
+               const FragmentLists& lists) { next(withFog(fog, *picture.gbuffer, sample, lists, picture.deepOpaque)); };
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<LayerSource> fogRuns() {
+  return std::make_unique<FogRuns>();
+}
+
+}  // namespace pellucid

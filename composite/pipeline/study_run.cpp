@@ -1,0 +1,141 @@
+#include "composite/pipeline/study_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+#include "composite/pipeline/refusals.h"
+#include "composite/study/flip.h"
+#include "gbuffer/weight_text.h"
+
+namespace pellucid {
+namespace {
+
+// What the sums of a candidate are kept in, for the table.
+std::string precisionOf(const Request& request) {
+  if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->precision;
+  return paintsBy<PaintSums>(request) ? tierRow(request.tier).name : "double";
+}
+
+StudyCandidate candidateOf(const Request& base, const std::string& name, Paint paint, int passes, Tier tier) {
+  StudyCandidate candidate{name, "", base};
+  Request& request = candidate.request;
+  request.method = name;
+  request.passes = passes;
+  request.tier = tier;
+  request.paint = std::move(paint);
+  request.measure = false;
+  request.layers.clear();
+  dropUnread(request);
+  candidate.precision = precisionOf(request);
+  return candidate;
+}
+
+// What a row says of its method: the sums of the device, or what the method's own sums would take.
+void describeRow(StudyRow& row, const StudyCandidate& candidate, const Result& result) {
+  row.method = candidate.name;
+  row.precision = candidate.precision;
+  row.samples = candidate.request.passes;
+  const Paint& paint = candidate.request.paint;
+  if (const auto* samples = std::get_if<PaintSamples>(&paint)) {
+    row.bits = stochasticBits(samples->settings);
+    row.passes = stochasticPasses(samples->settings);
+  } else if (const auto* listed = std::get_if<PaintListed>(&paint)) {
+    row.bits = listed->method.method->bits(listed->method.order);
+    row.passes = listed->method.method->passes;
+  } else if (std::holds_alternative<PaintSorted>(paint) || candidate.request.tier == Tier::exact) {
+    row.passes = 2;  // solids, then lists
+  } else {
+    row.bits = result.counts.bitsPerPixel;
+    row.passes = result.counts.passes;
+  }
+}
+
+Image<glm::vec3> colourOf(const Image<glm::vec4>& picture) {
+  Image<glm::vec3> rgb(picture.width(), picture.height());
+  for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = glm::vec3(picture[i]);
+  return rgb;
+}
+
+// Shaders compile on first use: untimed runs first, by the device's sums and by lists.
+void warmUp(Compositor& compositor, const Request& base) {
+  for (const Tier tier : {Tier::float32, Tier::exact})
+    compositor.run(candidateOf(base, "phenomenological", PaintSums{}, 1, tier).request);
+}
+
+// The candidates, the truth first: sorted, at the most passes.
+std::vector<std::size_t> orderOf(const std::vector<StudyCandidate>& candidates) {
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (paintsBy<PaintSorted>(candidates[i].request) && candidates[i].request.passes > candidates[best].request.passes)
+      best = i;
+  std::vector<std::size_t> order{best};
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (i != best) order.push_back(i);
+  return order;
+}
+
+}  // namespace
+
+std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vector<std::string>& methods,
+                                            const std::vector<int>& passes, const std::vector<Tier>& tiers,
+                                            const std::function<Paint(const std::string&, int)>& paintOf) {
+  std::vector<StudyCandidate> candidates;
+  for (const int count : passes) {
+    candidates.push_back(candidateOf(base, "over", PaintSorted{}, count, Tier::float32));
+    for (const std::string& name : methods) {
+      const Paint paint = paintOf(name, count);
+      const auto* listed = std::get_if<PaintListed>(&paint);
+      const std::string shown = listed ? listed->method.name : name;
+      if (!std::holds_alternative<PaintSums>(paint)) {
+        candidates.push_back(candidateOf(base, shown, paint, count, Tier::float32));
+        continue;
+      }
+      for (const Tier tier : tiers) candidates.push_back(candidateOf(base, shown, paint, count, tier));
+    }
+  }
+  for (const StudyCandidate& candidate : candidates) validate(candidate.request);
+  return candidates;
+}
+
+StudyOutcome runStudy(Compositor& compositor, std::vector<StudyCandidate> candidates, const Request& base) {
+  Journal& journal = compositor.journal();
+  StudyOutcome outcome;
+  outcome.rows.resize(candidates.size());
+  outcome.pictures.resize(candidates.size());
+  outcome.weight = weightText(planFor(base, compositor.facts()).pass.weight);
+  if (base.sums.fitWeight) {
+    const shading::WeightSettings fitted = compositor.fitWeight(base);
+    outcome.weight = weightText(fitted);
+    for (StudyCandidate& candidate : candidates) setWeight(candidate.request, fitted);
+  }
+  warmUp(compositor, base);
+  Image<glm::vec4> truth;
+  std::unique_ptr<FlipReference> flip;
+  const std::vector<std::size_t> order = orderOf(candidates);
+  for (std::size_t done = 0; done < order.size(); ++done) {
+    const StudyCandidate& candidate = candidates[order[done]];
+    StudyRow& row = outcome.rows[order[done]];
+    compositor.light(candidate.request);  // which all rows of as many passes share: it is no cost of a method
+    const Result result = compositor.run(candidate.request);
+    row.stages = result.stages.seconds();
+    for (const auto& [name, seconds] : row.stages) row.seconds += seconds;
+    describeRow(row, candidate, result);
+    if (done == 0) {
+      truth = result.picture.rgba;
+      flip = std::make_unique<FlipReference>(truth);
+    }
+    row.error = measureError(result.picture.rgba, truth);
+    row.relativeSquare = relativeSquareError(result.picture.rgba, truth);
+    row.flip = meanOf(flip->map(result.picture.rgba));
+    outcome.pictures[order[done]] = colourOf(result.picture.rgba);
+    journal.note(fmt::format("study: {} of {}: {}, rmse {:.3g}, {:.3f} s", done + 1, order.size(), rowName(row),
+                             row.error.rmse, row.seconds));
+  }
+  markFront(outcome.rows);
+  return outcome;
+}
+
+}  // namespace pellucid

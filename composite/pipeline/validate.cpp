@@ -1,0 +1,24 @@
+#include "composite/pipeline/validate.h"
+
+#include <fmt/format.h>
+
+#include "composite/pipeline/fog_step.h"
+#include "composite/pipeline/foliage_step.h"
+#include "composite/pipeline/refusals.h"
+#include "composite/pipeline/shadow_step.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+
+void validate(const Request& request) {
+  for (const Refusal& row : refusals())
+    if (row.applies(request))
+      throw UsageError(fmt::format("{}: found it with {}: {}", row.flag,
+                                   fmt::format(fmt::runtime(row.with), request.method), row.why));
+  checkShadows(request.shadows);
+  checkFoliage(request.foliage);
+  if (request.fog.on() && request.fog.file.empty())
+    checkFog(request.fog.text.value_or(FogText()), !request.fog.grid.empty());
+}
+
+}  // namespace pellucid

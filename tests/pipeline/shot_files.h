@@ -1,0 +1,25 @@
+// A small shot with everything that layers can do, as files: smoke cards that are marked for low resolution, a glass
+// that refracts and diffuses, a lamp with its own layer in the picture; the same picture as deep samples.
+#pragma once
+#include <string>
+
+#include "composite/pipeline/request.h"
+
+namespace pellucid::test {
+
+constexpr int kShotWidth = 24, kShotHeight = 18;
+
+struct ShotFiles {
+  std::string flat, deepPicture, scene, unlitScene, deepLayers;
+  std::string deepWall;  // the flat picture as one sample a pixel
+};
+// Written into a folder of the test's own.
+ShotFiles writeShotFiles(const std::string& folder);
+
+// Composites `scene` over `opaque` at pixel centres; nothing is inferred from the sky.
+Request requestOf(const std::string& opaque, const std::string& scene);
+
+// What --method takes, without the settings of samples.
+Paint paintOf(const std::string& method);
+
+}  // namespace pellucid::test
