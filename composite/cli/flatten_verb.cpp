@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/budget.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/deep/flatten.h"
@@ -44,7 +45,7 @@ void flattenVerb(const FlattenFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
-  const std::uint64_t most = parseBytes(flags.budget, "--budget") / 32;
+  const std::uint64_t most = parseBudget(flags.budget) / 32;
   const FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most); });
   if (flat.oddities.notFinite) note("{} deep samples are not finite and were skipped", flat.oddities.notFinite);
   if (flat.oddities.outOfRange)
@@ -65,7 +66,8 @@ void addFlatten(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("flatten", "Merge deep EXR files and composite their samples, exactly");
   verb->add_option("files", flags->files, "Deep EXR files, in any order")->required();
   verb->add_option("-o,--output", flags->output, "Flat EXR to write")->required();
-  verb->add_option("--budget", flags->budget, "Deep samples held at once, in bytes (64M, 2G)")->capture_default_str();
+  verb->add_option("--budget", flags->budget, "Deep samples held at once, in bytes (64M, 2G; at least 1M)")
+      ->capture_default_str();
   verb->add_option("--type", flags->type, "Of the flat channels")
       ->check(CLI::IsMember({"float", "half"}))
       ->capture_default_str();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "composite/cli/budget.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/tiers.h"
@@ -119,7 +120,8 @@ void SceneFlags::addTo(CLI::App& verb) {
       ->capture_default_str();
   verb.add_option("--order", order, "Submission order: file, reverse or shuffle:SEED")->capture_default_str();
   verb.add_option("--budget", budget,
-                  "Geometry resident at once, in bytes (64M, 2G): chunks, their GL buffers and pages of the files. "
+                  "Geometry resident at once, in bytes (64M, 2G; at least 1M): chunks, their GL buffers and pages of "
+                  "the files. "
                   "--shadows exact decodes all triangles besides")
       ->capture_default_str();
   verb.add_option("--device", device, "EGL device by number, see inspect --devices");
@@ -135,7 +137,7 @@ glm::dvec3 parsePoint(const std::string& text) {
 // Pages of the files: more would only keep what has been drawn.
 std::size_t pageBytes(std::size_t budget) {
   constexpr std::size_t kShare = 4, kMost = std::size_t{16} << 20;
-  return std::clamp<std::size_t>(budget / kShare, 1, kMost);
+  return std::min(budget / kShare, kMost);
 }
 
 }  // namespace
@@ -174,7 +176,7 @@ SurroundingsChoice surroundingsChoice(const std::string& text) {
 }
 
 void SceneFlags::into(Request& request) const {
-  const std::size_t bytes = parseBytes(budget, "--budget"), pages = pageBytes(bytes);
+  const std::size_t bytes = parseBudget(budget), pages = pageBytes(bytes);
   SceneOptions& scene = request.shot.scene;
   scene.metresPerUnit = request.shot.read.metresPerUnit;
   scene.lumensPerWatt = lumensPerWatt;
@@ -187,7 +189,7 @@ void SceneFlags::into(Request& request) const {
                                                  : TextureFilter::nearest;
   request.mask = mask == "smooth" ? MaskEdge::smooth : MaskEdge::hard;
   request.residency.order = parseOrder(order);
-  request.residency.budgetBytes = std::max<std::size_t>(bytes - pages, 1);
+  request.residency.budgetBytes = bytes - pages;
   request.device = device;
 }
 

@@ -4,10 +4,14 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
+#include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/gl_objects.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/errors.h"
@@ -121,15 +125,28 @@ Opened openAny(int device) {
 
 }  // namespace
 
+namespace {
+
+std::mutex contextsMutex;
+std::unordered_map<EGLContext, gl::Fences*> fencesOfContexts;  // under contextsMutex
+
+}  // namespace
+
 struct GlContext::Impl {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
+  std::optional<gl::Fences> fences;
 };
 
 GlContext::GlContext(int device) : impl_(std::make_unique<Impl>()) {
   const Opened opened = openAny(device);
   impl_->display = opened.display;
   impl_->context = opened.context;
+  impl_->fences.emplace();
+  {
+    const std::lock_guard lock(contextsMutex);
+    fencesOfContexts[impl_->context] = &*impl_->fences;
+  }
   if (debugWanted()) {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -139,8 +156,16 @@ GlContext::GlContext(int device) : impl_(std::make_unique<Impl>()) {
 
 // The display belongs to the process: another context may use it.
 GlContext::~GlContext() {
-  if (eglGetCurrentContext() == impl_->context)
-    eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  const EGLDisplay display = eglGetCurrentDisplay();
+  const EGLContext current = eglGetCurrentContext();
+  if (current != impl_->context) eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context);
+  {
+    const std::lock_guard lock(contextsMutex);
+    fencesOfContexts.erase(impl_->context);
+  }
+  impl_->fences.reset();
+  const bool others = current != impl_->context && current != EGL_NO_CONTEXT;
+  eglMakeCurrent(others ? display : impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, others ? current : EGL_NO_CONTEXT);
   eglDestroyContext(impl_->display, impl_->context);
 }
 
@@ -168,6 +193,13 @@ std::vector<std::string> listDevices() {
 }
 
 namespace gl {
+
+Fences& fences() {
+  const std::lock_guard lock(contextsMutex);
+  const auto found = fencesOfContexts.find(eglGetCurrentContext());
+  if (found == fencesOfContexts.end()) throw std::logic_error("no context of GlContext is current");
+  return *found->second;
+}
 
 void checkGl(std::string_view doing) {
   bool outOfMemory = false;

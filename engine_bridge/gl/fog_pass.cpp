@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine_bridge/gl/fences.h"
+
 namespace pellucid::gl {
 namespace {
 
@@ -67,6 +69,7 @@ void FogPass::draw(const Fog& fog, const FogFrame& frame) {
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_CULL_FACE);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  fences().mark();
   checkGl("marching fog");
 }
 

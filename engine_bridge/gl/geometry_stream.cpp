@@ -166,7 +166,7 @@ GeometryStream::Slot GeometryStream::makeSlot() const {
 
 void GeometryStream::upload(const ChunkData& chunk, Slot& slot) {
   // Else a driver keeps the chunk before for as long as it is being drawn, beside this one: beyond the budget.
-  slot.drawn.wait();
+  fences().wait(slot.drawn);
   auto fill = [](const Buffer& buffer, const auto& values) {
     glNamedBufferData(buffer.name(), static_cast<GLsizeiptr>(values.size() * sizeof(values[0])), values.data(),
                       GL_STREAM_DRAW);
@@ -184,7 +184,7 @@ void GeometryStream::present(Slot& slot, const std::function<void(const std::vec
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, slot.vertices.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, slot.indices.name());
   draw(slot.draws);
-  slot.drawn = Fence::after();
+  slot.drawn = fences().mark();
 }
 
 void GeometryStream::sweep(SubmissionOrder order, std::size_t budgetBytes,

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/gl_objects.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "engine_bridge/scene/triangle_source.h"
@@ -79,7 +80,7 @@ class GeometryStream {
     Buffer vertices, indices, triangleNumbers;
     VertexArray array;  // empty: the stages pull their vertices
     std::vector<ChunkDraw> draws;
-    Fence drawn;  // passed when the device has drawn the chunk
+    Fences::Mark drawn = 0;  // passed when the device has drawn the chunk
   };
   Slot makeSlot() const;
   void upload(const ChunkData& chunk, Slot& slot);

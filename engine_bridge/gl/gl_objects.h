@@ -39,44 +39,6 @@ class Handle {
   GLuint name_ = 0;
 };
 
-// A place in the device's work.
-class Fence {
- public:
-  Fence() = default;  // passed
-  ~Fence() { reset(); }
-  Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
-  Fence& operator=(Fence&& other) noexcept {
-    if (this != &other) {
-      reset();
-      sync_ = std::exchange(other.sync_, nullptr);
-    }
-    return *this;
-  }
-  Fence(const Fence&) = delete;
-  Fence& operator=(const Fence&) = delete;
-
-  // After all that was asked for so far.
-  static Fence after() {
-    Fence fence;
-    fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    return fence;
-  }
-  // Until the device has come past it, or fails: the next checkGl() reports that.
-  void wait() {
-    constexpr GLuint64 kNanoseconds = 1000000000;
-    while (sync_ && glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds) == GL_TIMEOUT_EXPIRED) {
-    }
-    reset();
-  }
-  void reset() {
-    if (sync_) glDeleteSync(sync_);
-    sync_ = nullptr;
-  }
-
- private:
-  GLsync sync_ = nullptr;
-};
-
 struct BufferKind {
   static GLuint create() {
     GLuint name = 0;

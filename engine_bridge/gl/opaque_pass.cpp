@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/permutation.h"
 #include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/scene_textures.h"
@@ -197,6 +198,7 @@ void OpaquePass::sweep(const char* output, const PunctualLight* light, GLsizei o
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(primitive.indices.size() / 3 * 3), GL_UNSIGNED_INT, nullptr);
     }
   }
+  fences().mark();
   glDisable(GL_DEPTH_TEST);
   checkGl("drawing opaque triangles");
 }

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/targets.h"
 #include "engine_bridge/gl/transparent_pass.h"
@@ -76,6 +77,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
     glUniform1ui(program.turn, turn);
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
+  gl::fences().mark();
   targets.readSums(planes, 0, 0);
   glUseProgram(0);
   return planes;

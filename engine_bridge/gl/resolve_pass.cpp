@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/program.h"
 #include "gbuffer/errors.h"
 #include "shaders/spread_pyramid.h"
@@ -100,6 +101,7 @@ struct ResolvePass::Impl {
       glScissor(0, part.z, part.x, part.y);
       glUniform1i(level, k);
       glDrawArrays(GL_TRIANGLES, 0, 3);
+      gl::fences().mark();
       glTextureBarrier();
     }
     glDisable(GL_SCISSOR_TEST);
@@ -147,6 +149,7 @@ void ResolvePass::draw(const ResolveTextures& textures, int width, int height, f
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  gl::fences().mark();
   glUseProgram(0);
   gl::checkGl("resolving");
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/permutation.h"
 #include "engine_bridge/gl/solidity.h"
 #include "engine_bridge/gl/targets.h"
@@ -177,6 +178,7 @@ void ShadowDrawer::drawOpaque() {
     glBindVertexArray(noVertices_.name());
     const int quads = (gbuffer_->viewZ.width() - 1) * (gbuffer_->viewZ.height() - 1);
     glDrawArrays(GL_TRIANGLES, 0, quads * 6);
+    fences().mark();
   } else if (sceneIsOpaque_) {
     const Program& program = programs_.get(kVertexStage, "gl/shadow_opaque.frag", {"EXACT_COVERAGE"});
     glUseProgram(program.name.name());

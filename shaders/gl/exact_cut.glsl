@@ -2,25 +2,40 @@
 // The fragment stage's half of gl/exact_coverage.glsl.
 #include "gl/exact_coverage.glsl"
 #ifdef EXACT_COVERAGE
-layout(location = 5) flat in vec4 corners01;
-layout(location = 6) flat in vec2 corner2;
+// The true corners: window pixels and 1; of a corner behind the eye or far outside, window pixels times w, and w.
+layout(location = 5) flat in vec3 corner0;
+layout(location = 6) flat in vec3 corner1;
+layout(location = 8) flat in vec3 corner2;
+layout(location = 9) flat in float winding;  // of them: 1 or -1; 0 covers nothing
 
-// Which side of the line from a to b the pixel centre lies on: > 0 is where the triangle lies when `turn` is its
-// winding. The same line gives the same number from either of its triangles; centres on it belong to one of them.
-bool behindEdge(vec2 a, vec2 b, float turn) {
-  bool swapped = a.x > b.x || (a.x == b.x && a.y > b.y);
-  vec2 from = swapped ? b : a;
-  vec2 to = swapped ? a : b;
-  float side = crossOf(to - from, gl_FragCoord.xy - from);
-  float inwards = swapped ? -turn : turn;
+const float kSideRounding = 4.8e-7f;  // of the products of which sideOf() takes the difference
+
+// Which side of the line from a to b the pixel centre lies on; where float does not tell, in double.
+float sideOf(vec3 a, vec3 b) {
+  vec2 centre = gl_FragCoord.xy;
+  if (a.z == 1.0f && b.z == 1.0f) {
+    vec2 along = b.xy - a.xy, towards = centre - a.xy;
+    float side = crossOf(along, towards);
+    if (abs(side) > kSideRounding * (abs(along.x * towards.y) + abs(along.y * towards.x))) return side;
+  }
+  precise dvec2 from = dvec2(a.xy) - dvec2(centre) * double(a.z);
+  precise dvec2 to = dvec2(b.xy) - dvec2(centre) * double(b.z);
+  precise double side = from.x * to.y - from.y * to.x;
+  return side > 0.0lf ? 1.0f : side < 0.0lf ? -1.0f : 0.0f;
+}
+
+// The same line gives the same side from either of its triangles; centres on it belong to one of them.
+bool behindEdge(vec3 a, vec3 b) {
+  bool swapped = a.x != b.x ? a.x > b.x : a.y != b.y ? a.y > b.y : a.z > b.z;
+  float side = swapped ? sideOf(b, a) : sideOf(a, b);
+  float inwards = swapped ? -winding : winding;
   return side == 0.0f ? inwards < 0.0f : side * inwards < 0.0f;
 }
 
 bool outsideTriangle() {
-  if (corners01.x == kUncut) return false;
-  float turn = crossOf(corners01.zw - corners01.xy, corner2 - corners01.xy) > 0.0f ? 1.0f : -1.0f;
-  return behindEdge(corners01.xy, corners01.zw, turn) || behindEdge(corners01.zw, corner2, turn) ||
-         behindEdge(corner2, corners01.xy, turn);
+  if (corner0.x == kUncut) return false;
+  return winding == 0.0f || behindEdge(corner0, corner1) || behindEdge(corner1, corner2) ||
+         behindEdge(corner2, corner0);
 }
 #else
 bool outsideTriangle() { return false; }
