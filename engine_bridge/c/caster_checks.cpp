@@ -138,8 +138,7 @@ pld_status checkView(Device& device, const pld_shadow_info& room, const pld_shad
   if (view.depth_texture == 0) return PLD_OK;
   TextureFacts depth;
   if (!factsOf(device.gl, view.depth_texture, depth))
-    return device.fail(PLD_ERROR_TEXTURE, "%s: depth_texture %u is no 2D texture of this context", kBegin,
-                       view.depth_texture);
+    return device.failTexture(kBegin, "depth_texture", view.depth_texture);
   attachment = depthAttachment(depth.format);
   if (attachment == 0)
     return device.fail(PLD_ERROR_FORMAT, "%s: depth_texture has format 0x%x, expected a depth format", kBegin,

@@ -29,19 +29,58 @@ pld_status checkProjection(Device& device, const char* call, const pld_frame& fr
   return PLD_OK;
 }
 
-pld_status checkScattering(Device& device, const char* call, const pld_frame& frame, uint32_t fields) {
-  if (names(fields, PLD_FIXED_REFRACTION) &&
-      (frame.refract < PLD_REFRACT_NOTHING || frame.refract > PLD_REFRACT_THROUGH_SLAB))
-    return device.fail(PLD_ERROR_ARGUMENT, "%s: found refract %d, which pld_refract does not have", call,
-                       static_cast<int>(frame.refract));
-  if (!device.permutation.scatters()) return PLD_OK;
-  if ((names(fields, PLD_FIXED_REFRACTION) && !isPositive(frame.refract_distance)) ||
-      (names(fields, PLD_FIXED_DIFFUSION) &&
-       (!(frame.diffusion_k0 >= 0.0f) || !std::isfinite(frame.diffusion_k0) || !isPositive(frame.diffusion_k1))))
+enum class Range { positive, notNegative, any };
+
+// One number of a frame.
+struct Number {
+  const char* name;
+  pld_fixed field;
+  float value;
+  Range range;
+  bool isRead;       // by this pass
+  bool isScattered;  // of refraction and diffusion
+};
+
+bool isWithin(const Number& number) {
+  if (!std::isfinite(number.value)) return false;
+  return !number.isRead || number.range == Range::any || number.value > 0.0f ||
+         (number.range == Range::notNegative && number.value == 0.0f);
+}
+
+// What a pass does not read may be any number, 0 of an empty struct too.
+pld_status checkNumber(Device& device, const char* call, const Number& number) {
+  if (isWithin(number)) return PLD_OK;
+  const auto found = static_cast<double>(number.value);
+  if (!number.isRead) {
+    // Hosts of 0.4 and earlier were not asked for what only scattering reads.
+    if (number.isScattered && !device.permutation.scatters() && !device.isHostSince(5)) return PLD_OK;
     return device.fail(PLD_ERROR_ARGUMENT,
-                       "%s: refract_distance %g, diffusion_k0 %g, diffusion_k1 %g: expected > 0, >= 0, > 0", call,
-                       static_cast<double>(frame.refract_distance), static_cast<double>(frame.diffusion_k0),
-                       static_cast<double>(frame.diffusion_k1));
+                       "%s: frame.%s: found %g, which this pass does not read: expected a number all the same, as 0",
+                       call, number.name, found);
+  }
+  static constexpr const char* expected[] = {"a number > 0", "a number >= 0", "a number"};
+  return device.fail(PLD_ERROR_ARGUMENT, "%s: frame.%s: found %g, expected %s", call, number.name, found,
+                     expected[static_cast<int>(number.range)]);
+}
+
+pld_status checkNumbersAlone(Device& device, const char* call, const pld_frame& frame, uint32_t fields) {
+  const Permutation& p = device.permutation;
+  const bool distance = p.has(PLD_FEATURE_REFRACTION) && frame.refract == PLD_REFRACT_AT_DISTANCE;
+  const bool diffuses = p.has(PLD_FEATURE_DIFFUSION), power = p.weight == PLD_WEIGHT_BY_POWER;
+  // An orthographic lens is in pixels a metre.
+  const bool lens = names(fields, PLD_FIXED_LENS) && isOrthographic(frame.projection);
+  const Number numbers[] = {
+      {"metres_per_unit", lens ? PLD_FIXED_LENS : PLD_FIXED_UNITS, frame.metres_per_unit, Range::positive, true, false},
+      {"pre_exposure", PLD_FIXED_EXPOSURE, frame.pre_exposure, Range::positive, true, false},
+      {"weight_near", PLD_FIXED_WEIGHT, frame.weight_near, Range::positive, true, false},
+      {"weight_far", PLD_FIXED_WEIGHT, frame.weight_far, Range::positive, true, false},
+      {"weight_exponent", PLD_FIXED_WEIGHT, frame.weight_exponent, Range::any, power, false},
+      {"refract_distance", PLD_FIXED_REFRACTION, frame.refract_distance, Range::positive, distance, true},
+      {"diffusion_k0", PLD_FIXED_DIFFUSION, frame.diffusion_k0, Range::notNegative, diffuses, true},
+      {"diffusion_k1", PLD_FIXED_DIFFUSION, frame.diffusion_k1, Range::positive, diffuses, true}};
+  for (const Number& number : numbers)
+    if (names(fields, number.field))
+      if (const pld_status status = checkNumber(device, call, number); status != PLD_OK) return status;
   return PLD_OK;
 }
 
@@ -85,8 +124,7 @@ pld_status checkOcclusion(Device& device, const pld_frame& frame) {
   if (!device.permutation.rims()) return PLD_OK;
   TextureFacts open;
   if (!factsOf(device.gl, frame.occlusion_texture, open))
-    return device.fail(PLD_ERROR_TEXTURE, "%s: occlusion_texture %u is no 2D texture of this context", kBegin,
-                       frame.occlusion_texture);
+    return device.failTexture(kBegin, "occlusion_texture", frame.occlusion_texture);
   if (!isOcclusion(open.format))
     return device.fail(PLD_ERROR_FORMAT, "%s: occlusion_texture has format 0x%x, expected numbers in red", kBegin,
                        static_cast<unsigned>(open.format));
@@ -105,11 +143,9 @@ pld_status checkTextures(Device& device, const pld_frame& frame, GLenum& attachm
                        frame.depth_texture);
   TextureFacts colour, depth;
   if (!factsOf(device.gl, frame.colour_texture, colour))
-    return device.fail(PLD_ERROR_TEXTURE, "%s: colour_texture %u is no 2D texture of this context", kBegin,
-                       frame.colour_texture);
+    return device.failTexture(kBegin, "colour_texture", frame.colour_texture);
   if (!factsOf(device.gl, frame.depth_texture, depth))
-    return device.fail(PLD_ERROR_TEXTURE, "%s: depth_texture %u is no 2D texture of this context", kBegin,
-                       frame.depth_texture);
+    return device.failTexture(kBegin, "depth_texture", frame.depth_texture);
   if (!isColour(colour.format))
     return device.fail(PLD_ERROR_FORMAT, "%s: colour_texture has format 0x%x, expected RGB or RGBA", kBegin,
                        static_cast<unsigned>(colour.format));
@@ -137,20 +173,16 @@ pld_status checkNumbers(Device& device, const char* call, const pld_frame& frame
                        frame.height);
   if (has(PLD_FIXED_PROJECTION) || has(PLD_FIXED_LENS))
     if (const pld_status status = checkProjection(device, call, frame); status != PLD_OK) return status;
-  // An orthographic lens is in pixels a metre.
-  const bool units = has(PLD_FIXED_UNITS) || (has(PLD_FIXED_LENS) && isOrthographic(frame.projection));
-  if ((units && !isPositive(frame.metres_per_unit)) || (has(PLD_FIXED_EXPOSURE) && !isPositive(frame.pre_exposure)))
-    return device.fail(PLD_ERROR_ARGUMENT, "%s: metres_per_unit %g, pre_exposure %g: expected both > 0", call,
-                       static_cast<double>(frame.metres_per_unit), static_cast<double>(frame.pre_exposure));
+  if (has(PLD_FIXED_REFRACTION) && (frame.refract < PLD_REFRACT_NOTHING || frame.refract > PLD_REFRACT_THROUGH_SLAB))
+    return device.fail(PLD_ERROR_ARGUMENT, "%s: found refract %d, which pld_refract does not have", call,
+                       static_cast<int>(frame.refract));
+  if (const pld_status status = checkNumbersAlone(device, call, frame, fields); status != PLD_OK) return status;
   if (has(PLD_FIXED_LENS) && !(isPositive(focalOf(frame, 1).x) && isPositive(focalOf(frame, 1).y)))
     return device.fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: a focal length that is not finite in pixels", call);
-  if (has(PLD_FIXED_WEIGHT) && (!isPositive(frame.weight_near) || !(frame.weight_far > frame.weight_near) ||
-                                !std::isfinite(frame.weight_far) || !std::isfinite(frame.weight_exponent)))
-    return device.fail(PLD_ERROR_ARGUMENT,
-                       "%s: weight range %g to %g, exponent %g: expected 0 < near < far and a number", call,
-                       static_cast<double>(frame.weight_near), static_cast<double>(frame.weight_far),
-                       static_cast<double>(frame.weight_exponent));
-  return checkScattering(device, call, frame, fields);
+  if (has(PLD_FIXED_WEIGHT) && !(frame.weight_far > frame.weight_near))
+    return device.fail(PLD_ERROR_ARGUMENT, "%s: frame.weight_near %g, weight_far %g: expected near < far", call,
+                       static_cast<double>(frame.weight_near), static_cast<double>(frame.weight_far));
+  return PLD_OK;
 }
 
 pld_status checkFrame(Device& device, const pld_frame& frame, int width, int height, GLenum& attachment) {

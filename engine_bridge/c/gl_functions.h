@@ -12,6 +12,7 @@ namespace pellucid::c {
 #define PLD_GL_REQUIRED(X)                                                             \
   X(ActiveTexture, PFNGLACTIVETEXTUREPROC)                                             \
   X(AttachShader, PFNGLATTACHSHADERPROC)                                               \
+  X(BeginQuery, PFNGLBEGINQUERYPROC)                                                   \
   X(BindBuffer, PFNGLBINDBUFFERPROC)                                                   \
   X(BindBufferBase, PFNGLBINDBUFFERBASEPROC)                                           \
   X(BindBufferRange, PFNGLBINDBUFFERRANGEPROC)                                         \
@@ -45,6 +46,7 @@ namespace pellucid::c {
   X(DrawBuffers, PFNGLDRAWBUFFERSPROC)                                                 \
   X(Enable, PFNGLENABLEPROC)                                                           \
   X(Enablei, PFNGLENABLEIPROC)                                                         \
+  X(EndQuery, PFNGLENDQUERYPROC)                                                       \
   X(FramebufferTexture2D, PFNGLFRAMEBUFFERTEXTURE2DPROC)                               \
   X(FramebufferTextureLayer, PFNGLFRAMEBUFFERTEXTURELAYERPROC)                         \
   X(GenBuffers, PFNGLGENBUFFERSPROC)                                                   \
@@ -53,6 +55,7 @@ namespace pellucid::c {
   X(GenSamplers, PFNGLGENSAMPLERSPROC)                                                 \
   X(GenTextures, PFNGLGENTEXTURESPROC)                                                 \
   X(GenVertexArrays, PFNGLGENVERTEXARRAYSPROC)                                         \
+  X(GetActiveUniformBlockiv, PFNGLGETACTIVEUNIFORMBLOCKIVPROC)                         \
   X(GetBooleani_v, PFNGLGETBOOLEANI_VPROC)                                             \
   X(GetBooleanv, PFNGLGETBOOLEANVPROC)                                                 \
   X(GetError, PFNGLGETERRORPROC)                                                       \
@@ -64,18 +67,22 @@ namespace pellucid::c {
   X(GetProgramiv, PFNGLGETPROGRAMIVPROC)                                               \
   X(GetQueryObjectiv, PFNGLGETQUERYOBJECTIVPROC)                                       \
   X(GetQueryObjectui64v, PFNGLGETQUERYOBJECTUI64VPROC)                                 \
+  X(GetQueryiv, PFNGLGETQUERYIVPROC)                                                   \
   X(GetShaderInfoLog, PFNGLGETSHADERINFOLOGPROC)                                       \
   X(GetShaderiv, PFNGLGETSHADERIVPROC)                                                 \
   X(GetStringi, PFNGLGETSTRINGIPROC)                                                   \
   X(GetTexLevelParameteriv, PFNGLGETTEXLEVELPARAMETERIVPROC)                           \
   X(GetUniformBlockIndex, PFNGLGETUNIFORMBLOCKINDEXPROC)                               \
+  X(GetUniformIndices, PFNGLGETUNIFORMINDICESPROC)                                     \
   X(GetUniformLocation, PFNGLGETUNIFORMLOCATIONPROC)                                   \
+  X(GetUniformiv, PFNGLGETUNIFORMIVPROC)                                               \
   X(IsEnabled, PFNGLISENABLEDPROC)                                                     \
   X(IsEnabledi, PFNGLISENABLEDIPROC)                                                   \
   X(IsFramebuffer, PFNGLISFRAMEBUFFERPROC)                                             \
   X(IsBuffer, PFNGLISBUFFERPROC)                                                       \
   X(IsProgram, PFNGLISPROGRAMPROC)                                                     \
   X(IsTexture, PFNGLISTEXTUREPROC)                                                     \
+  X(IsVertexArray, PFNGLISVERTEXARRAYPROC)                                             \
   X(LinkProgram, PFNGLLINKPROGRAMPROC)                                                 \
   X(PolygonMode, PFNGLPOLYGONMODEPROC)                                                 \
   X(QueryCounter, PFNGLQUERYCOUNTERPROC)                                               \

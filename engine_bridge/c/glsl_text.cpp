@@ -1,6 +1,8 @@
 #include "engine_bridge/c/glsl_text.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -128,8 +130,23 @@ std::vector<std::string> storageDefines(int first) {
   return defines;
 }
 
+std::string seamMark(const Permutation& permutation, pld_stage stage) {
+  std::uint32_t hash = 2166136261u;  // FNV-1a
+  for (const std::string& define : seamDefines(permutation, stage))
+    for (const char c : define + '\n') hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  char mark[20];
+  std::snprintf(mark, sizeof(mark), "pldScale_%08x", hash);
+  return mark;
+}
+
+const char* casterMark(bool coloured) {
+  return coloured ? "pldShadowMetric_coloured" : "pldShadowMetric_grey";
+}
+
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
-  return hostText("gl/seam.glsl", seamDefines(permutation, stage),
+  std::vector<std::string> defines = seamDefines(permutation, stage);
+  defines.push_back("SCALE " + seamMark(permutation, stage));
+  return hostText("gl/seam.glsl", defines,
                   {"PUBLISHED",
                    "GREY",
                    "LEAN",
@@ -165,14 +182,16 @@ std::string seamText(const Permutation& permutation, pld_stage stage, int versio
                    "DIFFUSION_K0",
                    "DIFFUSION_K1",
                    "FOCAL_X",
-                   "FOCAL_Y"},
+                   "FOCAL_Y",
+                   "SCALE"},
                   version, places, {"PLD_SEAM", "pld_", ""});
 }
 
 std::string casterText(bool coloured, int version, const SeamPlaces& places) {
-  std::vector<std::string> defines;
+  std::vector<std::string> defines{std::string("METRIC ") + casterMark(coloured)};
   if (!coloured) defines.emplace_back("GREY");
-  return hostText("gl/caster_seam.glsl", defines, {"GREY"}, version, places, {"PLD_CASTER_SEAM", "pld_c_", "PLD_C_"});
+  return hostText("gl/caster_seam.glsl", defines, {"GREY", "METRIC"}, version, places,
+                  {"PLD_CASTER_SEAM", "pld_c_", "PLD_C_"});
 }
 
 std::string shadowText(const ShadowShape& shape, int version, const SeamPlaces& places) {

@@ -32,6 +32,12 @@ std::vector<std::string> storageDefines(int first);
 // Texts for hosts, without a #version line. Names that the host does not call begin with pld_, so that they meet none
 // of its own; a shader may hold several of the texts.
 //   version  of GLSL, 330 to 460; below 420 units and binding are left to pld_connect()
+// What validation knows a text by: the name of a number in its block, which no other stage or permutation has. The same
+// for every version and place.
+std::string seamMark(const Permutation& permutation, pld_stage stage);
+const char* casterMark(bool coloured);
+// Textures that seams read, in the order of their units.
+constexpr const char* kSeamSamplers[] = {"pldOpaqueZ", "pldSolid", "pldFrontZ", "pldOpaqueOpen"};
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places);
 std::string casterText(bool coloured, int version, const SeamPlaces& places);
 

@@ -34,8 +34,7 @@ pld_status HostTarget::check(const pld_target& target, int width, int height, GL
     return PLD_OK;
   }
   TextureFacts facts;
-  if (!factsOf(device_.gl, target.name, facts))
-    return device_.fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is no 2D texture of this context", target.name);
+  if (!factsOf(device_.gl, target.name, facts)) return device_.failTexture("pld_resolve", "target", target.name);
   if (source && target.name == source)
     return device_.fail(PLD_ERROR_TEXTURE,
                         "pld_resolve: target %u is the frame's colour_texture, which is read meanwhile", target.name);

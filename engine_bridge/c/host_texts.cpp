@@ -1,6 +1,7 @@
 #include "engine_bridge/c/host_texts.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <utility>
 
@@ -53,6 +54,16 @@ pld_status HostTexts::shadows(pld_shadow_text which, int version, const char*& t
   return PLD_OK;
 }
 
+// Hosts of 0.4 and earlier could connect whatever they had.
+pld_status HostTexts::failWithoutText(GLuint program) {
+  constexpr const char* sentence = "pld_connect: program %u holds no text of pld_glsl() or pld_shadow_glsl()";
+  if (device_.isHostSince(5)) return device_.fail(PLD_ERROR_ARGUMENT, sentence, program);
+  char text[120];
+  std::snprintf(text, sizeof(text), sentence, program);
+  device_.say(PLD_LOG_WARNING, text);
+  return PLD_OK;
+}
+
 pld_status HostTexts::connect(GLuint program) {
   const GlFunctions& gl = device_.gl;
   const pld_create_info& info = device_.info;
@@ -61,19 +72,22 @@ pld_status HostTexts::connect(GLuint program) {
   if (!linked)
     return device_.fail(PLD_ERROR_ARGUMENT, "pld_connect: found %u, expected a linked program of this context",
                         program);
+  bool holdsText = false;
   const std::pair<const char*, GLuint> blocks[] = {{"PldFrame", info.uniform_binding},
                                                    {"PldShadowFrame", info.uniform_binding},
                                                    {"PldShadows", casters_.info().uniform_binding}};
   for (const auto& [name, binding] : blocks) {
     const GLuint block = gl.GetUniformBlockIndex(program, name);
-    if (block != GL_INVALID_INDEX) gl.UniformBlockBinding(program, block, binding);
+    if (block == GL_INVALID_INDEX) continue;
+    gl.UniformBlockBinding(program, block, binding);
+    holdsText = true;
   }
+  if (!holdsText) return failWithoutText(program);
   GLint current = 0;
   gl.GetIntegerv(GL_CURRENT_PROGRAM, &current);
   gl.UseProgram(program);
-  const char* names[] = {"pldOpaqueZ", "pldSolid", "pldFrontZ", "pldOpaqueOpen"};
   for (GLint i = 0; i < device_.permutation.seamUnits(); ++i) {
-    const GLint place = gl.GetUniformLocation(program, names[i]);
+    const GLint place = gl.GetUniformLocation(program, kSeamSamplers[i]);
     if (place >= 0) gl.Uniform1i(place, static_cast<GLint>(info.texture_unit) + i);
   }
   const GLint maps = gl.GetUniformLocation(program, "pldShadowMaps");

@@ -17,6 +17,7 @@ class HostTexts {
 
  private:
   pld_status checkVersion(const char* call, int version);
+  pld_status failWithoutText(GLuint program);
 
   Device& device_;
   const CasterMaps& casters_;

@@ -6,12 +6,26 @@
 
 using namespace pellucid::c;
 
+pld_status pld_pass::checkFeatures() {
+  const Permutation& p = device.permutation;
+  if (p.published() && p.fronts())
+    return device.fail(PLD_ERROR_UNSUPPORTED,
+                       "pld_create: found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, whose nearest layer it keeps "
+                       "no plane for: expected PLD_TIER_FLOAT, PLD_TIER_HALF or PLD_TIER_EXACT");
+  constexpr const char* noLight =
+      "pld_create: found PLD_FEATURE_LIGHT in PLD_TIER_PUBLISHED, which keeps no plane for light that adds: it is lost";
+  if (p.published() && p.has(PLD_FEATURE_LIGHT)) {
+    if (device.isHostSince(5)) return device.fail(PLD_ERROR_UNSUPPORTED, "%s", noLight);
+    device.say(PLD_LOG_WARNING, noLight);  // as hosts of 0.4 and earlier have it
+  }
+  const std::string conflict = conflictOf(p);
+  return conflict.empty() ? PLD_OK : device.fail(PLD_ERROR_UNSUPPORTED, "pld_create: %s", conflict.c_str());
+}
+
 pld_status pld_pass::checkDevice() {
   const GlFunctions& gl = device.gl;
   const pld_create_info& info = device.info;
   const Permutation& p = device.permutation;
-  const std::string conflict = conflictOf(p);
-  if (!conflict.empty()) return device.fail(PLD_ERROR_UNSUPPORTED, "pld_create: %s", conflict.c_str());
   if (p.has(PLD_FEATURE_DIFFUSION) && !gl.TextureBarrier)
     return device.fail(PLD_ERROR_UNSUPPORTED,
                        "pld_create: PLD_FEATURE_DIFFUSION needs OpenGL 4.5 or GL_ARB_texture_barrier");
@@ -40,6 +54,7 @@ std::string pld_pass::makeParts() {
   spread_.create();
   stages_.create();
   views_.create();
+  validation_.create();
   std::string failure = views_.build();
   if (failure.empty()) failure = stages_.build();
   if (failure.empty()) failure = spread_.build();
@@ -55,11 +70,11 @@ pld_status pld_pass::create(const pld_create_info& info) {
   p.method = info.method;
   p.tier = info.tier;
   p.features = info.features;
-  constexpr uint32_t lightByItself = PLD_VERSION_MAJOR << 20 | 4 << 10;
-  if (info.version < lightByItself && p.scatters()) p.features |= PLD_FEATURE_LIGHT;
+  if (!device.isHostSince(4) && p.scatters() && !p.published()) p.features |= PLD_FEATURE_LIGHT;
   p.weight = info.weight;
   p.depth = info.depth;
   p.rows = info.rows;
+  if (const pld_status status = checkFeatures(); status != PLD_OK) return status;
   if (const pld_status status = checkDevice(); status != PLD_OK) return status;
   device.reportPendingErrors("pld_create");
   SavedState state;
@@ -76,6 +91,7 @@ pld_status pld_pass::create(const pld_create_info& info) {
 void pld_pass::destroyObjects() {
   casters_.release();
   room_.destroy();
+  validation_.destroy();
   views_.destroy();
   stages_.destroy();
   spread_.destroy();
@@ -143,6 +159,7 @@ pld_status pld_pass::fix(const pld_frame& frame, uint32_t fields) {
   if (const pld_status status = checkNumbers(device, "pld_fix", frame, fields); status != PLD_OK) return status;
   device.permutation.fixed = frame;
   device.permutation.fixedFields = fields;
+  validation_.nameTexts();
   return PLD_OK;
 }
 
@@ -174,6 +191,7 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
                        frame.width, frame.height, before.width, before.height);
   if (const pld_status status = stages_.open(stage, frame, width_, attachment, isFirst); status != PLD_OK)
     return status;
+  validation_.beginStage(room_.storage());
   if (isFirst) stagesDone_ = 0;
   step_ = Step::open;
   return PLD_OK;
@@ -181,11 +199,13 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
 
 pld_status pld_pass::end() {
   if (step_ != Step::open) return device.fail(PLD_ERROR_ORDER, "pld_end: without a pld_begin");
+  // A stage that was misused is drawn all the same: the picture shows what the sentence says.
+  const pld_status seen = validation_.endStage(stages_.stage());
   bool whole = false;
   const pld_status status = stages_.close(whole);
   if (whole) stagesDone_ |= 1u << stages_.stage();
   step_ = Step::drawn;
-  return status;
+  return status == PLD_OK ? seen : status;
 }
 
 pld_status pld_pass::resolve(const pld_target& target) {
@@ -212,13 +232,16 @@ pld_status pld_pass::shadowBegin(const pld_shadow_view& view) {
   if (casters_.isOpen())
     return device.fail(PLD_ERROR_ORDER, "pld_shadow_begin: the last face has not met its pld_shadow_end");
   if (step_ == Step::open) return device.fail(PLD_ERROR_ORDER, "pld_shadow_begin: between pld_begin and pld_end");
-  return casters_.begin(view);
+  const pld_status status = casters_.begin(view);
+  if (status == PLD_OK) validation_.beginFace();
+  return status;
 }
 
 pld_status pld_pass::shadowEnd() {
   if (!casters_.isOpen()) return device.fail(PLD_ERROR_ORDER, "pld_shadow_end: without a pld_shadow_begin");
+  const pld_status seen = validation_.endFace();
   casters_.end();
-  return PLD_OK;
+  return seen;
 }
 
 pld_status pld_pass::queryTimes(pld_value what, uint64_t& value) {

@@ -5,6 +5,7 @@
 
 #include "engine_bridge/c/host_texts.h"
 #include "engine_bridge/c/stages.h"
+#include "engine_bridge/c/validation.h"
 #include "engine_bridge/c/views.h"
 
 struct pld_pass {
@@ -29,6 +30,7 @@ struct pld_pass {
  private:
   enum class Step { sizeless, between, open, drawn };  // of a frame; drawn: a stage ended, no resolve yet
 
+  pld_status checkFeatures();
   pld_status checkDevice();
   std::string makeParts();
   pld_status makeTextures(int width, int height);
@@ -46,6 +48,7 @@ struct pld_pass {
   pellucid::c::Stages stages_{device, planes_, rims_, low_, room_};
   pellucid::c::Views views_{device, planes_, rims_, low_, spread_, casters_};
   pellucid::c::HostTexts texts_{device, casters_};
+  pellucid::c::Validation validation_{device, casters_};
 
   Step step_ = Step::sizeless;
   int width_ = 0, height_ = 0;  // of pld_resize()

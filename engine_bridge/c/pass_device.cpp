@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "engine_bridge/c/textures.h"
+
 namespace pellucid::c {
 
 pld_status Device::load(const pld_create_info& create) {
@@ -26,6 +28,11 @@ pld_status Device::fail(pld_status status, const char* format, ...) {
 
 void Device::say(pld_log_level level, const char* text) const {
   if (info.log) info.log(info.log_user, level, text);
+}
+
+pld_status Device::failTexture(const char* call, const char* field, GLuint name) {
+  return fail(PLD_ERROR_TEXTURE, "%s: %s %u is %s: expected a GL_TEXTURE_2D of this context", call, field, name,
+              kindOf(gl, name));
 }
 
 void Device::reportPendingErrors(const char* call) const {
@@ -51,28 +58,27 @@ void Device::create() {
   for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     gl.SamplerParameteri(sampler_, wrap, GL_CLAMP_TO_EDGE);
   gl.SamplerParameteri(sampler_, GL_TEXTURE_COMPARE_MODE, GL_NONE);
-  makeFrame(own_);
+  gl.BindVertexArray(vertexArray_);  // a name alone is no object
   if (gl.ObjectLabel) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
     std::snprintf(label_, sizeof(label_), "pellucid %p %lld", static_cast<void*>(this), static_cast<long long>(now));
-    gl.ObjectLabel(GL_FRAMEBUFFER, own_, -1, label_);
+    gl.ObjectLabel(GL_VERTEX_ARRAY, vertexArray_, -1, label_);
   }
   if (info.flags & PLD_FLAG_TIMERS) timers.create(gl);
 }
 
 void Device::destroy() {
   timers.destroy(gl);
-  releaseFrame(own_);
   if (vertexArray_) gl.DeleteVertexArrays(1, &vertexArray_);
   if (sampler_) gl.DeleteSamplers(1, &sampler_);
 }
 
-// A framebuffer is never shared between contexts, and ours has a label that no other has.
+// Vertex arrays are never shared between contexts - Mesa shares framebuffers -, and ours has a label that no other has.
 bool Device::isCurrent() const {
-  if (!gl.GetObjectLabel) return gl.IsFramebuffer(own_) == GL_TRUE;
+  if (gl.IsVertexArray(vertexArray_) != GL_TRUE) return false;
+  if (!gl.GetObjectLabel) return true;
   char label[sizeof(label_)] = {};
-  if (gl.IsFramebuffer(own_) != GL_TRUE) return false;
-  gl.GetObjectLabel(GL_FRAMEBUFFER, own_, sizeof(label), nullptr, label);
+  gl.GetObjectLabel(GL_VERTEX_ARRAY, vertexArray_, sizeof(label), nullptr, label);
   return std::strcmp(label, label_) == 0;
 }
 

@@ -20,11 +20,16 @@ class Device {
   pld_status load(const pld_create_info& create);
   void create();
   void destroy();
+  // Whether the context of load() is current on this thread, and not one that shares objects with it.
   bool isCurrent() const;
+  // Whether the host was built with the header of this minor version or a later one.
+  bool isHostSince(uint32_t minor) const { return info.version >= (PLD_VERSION_MAJOR << 20 | minor << 10); }
 
   // Says why, to the message and to the log.
   [[gnu::format(printf, 3, 4)]] pld_status fail(pld_status status, const char* format, ...);
   void say(pld_log_level level, const char* text) const;
+  // Of a texture for which factsOf() is false.
+  pld_status failTexture(const char* call, const char* field, GLuint name);
 
   // GL errors that the host has left are reported to the log and cleared.
   void reportPendingErrors(const char* call) const;
@@ -56,8 +61,8 @@ class Device {
 
  private:
   SavedState saved_;
-  GLuint vertexArray_ = 0, sampler_ = 0, own_ = 0;
-  char label_[64] = {};
+  GLuint vertexArray_ = 0, sampler_ = 0;
+  char label_[64] = {};  // of vertexArray_
 };
 
 // The state in which textures and buffers are made; what the host had comes back at its end.

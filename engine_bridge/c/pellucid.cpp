@@ -32,14 +32,21 @@ pld_status guarded(pld_pass* pass, const char* call, F f) noexcept {
   return status;
 }
 
+// For a host without a log too.
+void keep(const pld_create_info& info, const char* text) {
+  if (info.message && info.message_size > 0) std::snprintf(info.message, info.message_size, "%s", text);
+}
+
 pld_status refuse(const pld_create_info& info, pld_status status, const char* text) {
+  keep(info, text);
   if (info.log) info.log(info.log_user, PLD_LOG_ERROR, text);
   return status;
 }
 
-// Before 0.4 it ended before fragments_per_pixel.
+// Before 0.4 it ended before fragments_per_pixel, in 0.4 before message.
 pld_status wholeInfo(const pld_create_info& info, pld_create_info& whole) {
-  if (info.struct_size != offsetof(pld_create_info, fragments_per_pixel) && info.struct_size != sizeof(pld_create_info))
+  if (info.struct_size != offsetof(pld_create_info, fragments_per_pixel) &&
+      info.struct_size != offsetof(pld_create_info, message) && info.struct_size != sizeof(pld_create_info))
     return PLD_ERROR_VERSION;  // its log may lie elsewhere
   std::memcpy(&whole, &info, info.struct_size);
   return PLD_OK;
@@ -72,7 +79,8 @@ pld_status checkInfo(const pld_create_info& info) {
   constexpr uint32_t features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
                                 PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS |
                                 PLD_FEATURE_LOW_RESOLUTION;
-  constexpr uint32_t flags = PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS;
+  constexpr uint32_t flags =
+      PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS | PLD_FLAG_VALIDATE;
   if ((info.features & ~features) || (info.flags & ~flags))
     return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: features or flags hold a bit that this version does not have");
   return PLD_OK;
@@ -120,6 +128,7 @@ pld_status pld_create(const pld_create_info* info, pld_pass** pass) {
   if (!info) return PLD_ERROR_ARGUMENT;
   pld_create_info whole{};
   if (const pld_status status = wholeInfo(*info, whole); status != PLD_OK) return status;
+  keep(whole, "");
   if (const pld_status status = checkInfo(whole); status != PLD_OK) return status;
   pld_pass* made = nullptr;
   pld_status status = PLD_ERROR_MEMORY;
@@ -136,6 +145,7 @@ pld_status pld_create(const pld_create_info* info, pld_pass** pass) {
   if (status == PLD_OK)
     *pass = made;
   else if (made) {
+    if (made->device.message[0]) keep(whole, made->device.message);
     made->destroyObjects();
     delete made;
   }
@@ -235,8 +245,9 @@ const char* pld_status_name(pld_status status) {
   static const char* const names[] = {"PLD_OK",           "PLD_ERROR_ARGUMENT", "PLD_ERROR_VERSION",
                                       "PLD_ERROR_ORDER",  "PLD_ERROR_SIZE",     "PLD_ERROR_TEXTURE",
                                       "PLD_ERROR_FORMAT", "PLD_ERROR_CONTEXT",  "PLD_ERROR_UNSUPPORTED",
-                                      "PLD_ERROR_MEMORY", "PLD_ERROR_BUSY",     "PLD_ERROR_INTERNAL"};
-  return status >= PLD_OK && status <= PLD_ERROR_INTERNAL ? names[status] : "no pld_status";
+                                      "PLD_ERROR_MEMORY", "PLD_ERROR_BUSY",     "PLD_ERROR_INTERNAL",
+                                      "PLD_ERROR_MISUSE"};
+  return status >= PLD_OK && status <= PLD_ERROR_MISUSE ? names[status] : "no pld_status";
 }
 
 }  // extern "C"

@@ -1,5 +1,7 @@
 #include "engine_bridge/c/saved_state.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <iterator>
 
 namespace pellucid::c {
@@ -185,6 +187,54 @@ void SavedState::restoreShape(const GlFunctions& gl) const {
   for (std::size_t i = kAccumulationSwitches; i < std::size(kSwitches); ++i)
     choose(gl, kSwitches[i], enabled_[i] != GL_FALSE);
   if (!gl.core) choose(gl, kPolygonStipple, enabled_[std::size(kSwitches) + 1] != GL_FALSE);
+}
+
+bool SavedState::Blend::blendsAs(const Blend& other) const {
+  if (enabled != other.enabled) return false;
+  return !enabled ||
+         (sourceRgb == other.sourceRgb && targetRgb == other.targetRgb && sourceAlpha == other.sourceAlpha &&
+          targetAlpha == other.targetAlpha && equationRgb == other.equationRgb && equationAlpha == other.equationAlpha);
+}
+
+const char* SavedState::differentDrawing(const SavedState& before) const {
+  if (drawFramebuffer_ != before.drawFramebuffer_) return "the draw framebuffer";
+  if (!std::equal(viewport_, viewport_ + 4, before.viewport_)) return "the viewport";
+  if (depthMask_ != before.depthMask_) return "the depth mask";
+  if (enabled_[0] != before.enabled_[0]) return "the depth test";
+  if (enabled_[0] && depthFunction_ != before.depthFunction_) return "the depth function";
+  return nullptr;
+}
+
+const char* SavedState::differentPlace(const SavedState& before, int& place) const {
+  for (place = 0; place < kDrawBuffers; ++place) {
+    if (!blend_[place].blendsAs(before.blend_[place])) return "blending of draw buffer";
+    if (!std::equal(blend_[place].mask, blend_[place].mask + 4, before.blend_[place].mask))
+      return "the colour mask of draw buffer";
+  }
+  for (int i = 0; i < units_.count; ++i) {
+    place = units_.first + i;
+    if (before.textures_[i] == 0) continue;  // which the seam does not read
+    if (textures_[i] != before.textures_[i]) return "the texture of the seam's unit";
+    if (samplers_[i] != before.samplers_[i]) return "the sampler of the seam's unit";
+  }
+  place = uniformBinding_;
+  if (place >= 0 && uniforms_.buffer != before.uniforms_.buffer) return "the uniform buffer at binding";
+  for (int i = 0; i < storage_.count; ++i) {
+    place = storage_.first + i;
+    if (listed_[i].buffer != before.listed_[i].buffer) return "the storage buffer at binding";
+  }
+  return nullptr;
+}
+
+bool SavedState::differs(const SavedState& before, char* what, std::size_t size) const {
+  if (const char* drawing = differentDrawing(before)) {
+    std::snprintf(what, size, "%s", drawing);
+    return true;
+  }
+  int place = 0;
+  const char* thing = differentPlace(before, place);
+  if (thing) std::snprintf(what, size, "%s %d", thing, place);
+  return thing != nullptr;
 }
 
 void setViewportTo(const GlFunctions& gl, int x, int y, int width, int height) {

@@ -1,5 +1,7 @@
 // The GL state that this library touches: the whole list, saved and put back. INTEGRATION.md names it for hosts.
 #pragma once
+#include <cstddef>
+
 #include "engine_bridge/c/gl_functions.h"
 
 namespace pellucid::c {
@@ -29,7 +31,13 @@ class SavedState {
   void restoreForDraws(const GlFunctions& gl) const;
   void restoreActiveUnit(const GlFunctions& gl) const;
 
+  // Whether something that the host leaves alone between a begin and its end was another when `before` was saved, with
+  // the same arguments. `what` names the first such thing: "the draw framebuffer", "blending of draw buffer 2".
+  bool differs(const SavedState& before, char* what, std::size_t size) const;
+
  private:
+  const char* differentDrawing(const SavedState& before) const;
+  const char* differentPlace(const SavedState& before, int& place) const;
   void restoreShape(const GlFunctions& gl) const;
   void restoreUnit(const GlFunctions& gl, int i) const;
   void restoreObjects(const GlFunctions& gl) const;
@@ -43,6 +51,7 @@ class SavedState {
   struct Blend {
     GLboolean enabled, mask[4];
     GLint sourceRgb, targetRgb, sourceAlpha, targetAlpha, equationRgb, equationAlpha;
+    bool blendsAs(const Blend& other) const;
   };
   Units units_;
   int uniformBinding_ = -1;

@@ -1,6 +1,49 @@
 #include "engine_bridge/c/textures.h"
 
 namespace pellucid::c {
+namespace {
+
+struct Kind {
+  GLenum target, binding;
+  const char* text;
+};
+constexpr Kind kKinds[] = {
+    {GL_TEXTURE_2D_MULTISAMPLE, GL_TEXTURE_BINDING_2D_MULTISAMPLE, "a GL_TEXTURE_2D_MULTISAMPLE, to be resolved first"},
+    {GL_TEXTURE_2D_MULTISAMPLE_ARRAY, GL_TEXTURE_BINDING_2D_MULTISAMPLE_ARRAY, "a GL_TEXTURE_2D_MULTISAMPLE_ARRAY"},
+    {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY, "a GL_TEXTURE_2D_ARRAY, of which a layer may be viewed"},
+    {GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BINDING_CUBE_MAP, "a GL_TEXTURE_CUBE_MAP"},
+    {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY, "a GL_TEXTURE_CUBE_MAP_ARRAY"},
+    {GL_TEXTURE_RECTANGLE, GL_TEXTURE_BINDING_RECTANGLE, "a GL_TEXTURE_RECTANGLE"},
+    {GL_TEXTURE_3D, GL_TEXTURE_BINDING_3D, "a GL_TEXTURE_3D"},
+    {GL_TEXTURE_1D, GL_TEXTURE_BINDING_1D, "a GL_TEXTURE_1D"},
+    {GL_TEXTURE_1D_ARRAY, GL_TEXTURE_BINDING_1D_ARRAY, "a GL_TEXTURE_1D_ARRAY"},
+    {GL_TEXTURE_BUFFER, GL_TEXTURE_BINDING_BUFFER, "a GL_TEXTURE_BUFFER"}};
+
+// Where GL does not say what a texture is: whether it can be bound as one. Leaves the binding and no error.
+bool isBindable(const GlFunctions& gl, GLuint name, const Kind& kind) {
+  GLint bound = 0, now = 0;
+  gl.GetIntegerv(kind.binding, &bound);
+  gl.BindTexture(kind.target, name);
+  gl.GetIntegerv(kind.binding, &now);
+  const bool fits = static_cast<GLuint>(now) == name;
+  if (!fits) gl.GetError();
+  gl.BindTexture(kind.target, static_cast<GLuint>(bound));
+  return fits;
+}
+
+}  // namespace
+
+const char* kindOf(const GlFunctions& gl, GLuint name) {
+  if (name == 0) return "no texture";
+  if (!gl.IsTexture(name)) return "no texture of this context";
+  GLint target = 0;
+  if (gl.GetTextureParameteriv) gl.GetTextureParameteriv(name, GL_TEXTURE_TARGET, &target);
+  for (const Kind& kind : kKinds) {
+    const bool known = kind.target != GL_TEXTURE_CUBE_MAP_ARRAY || gl.version >= 40;
+    if (target ? static_cast<GLenum>(target) == kind.target : known && isBindable(gl, name, kind)) return kind.text;
+  }
+  return "a texture without an image";
+}
 
 bool factsOf(const GlFunctions& gl, GLuint name, TextureFacts& facts) {
   if (name == 0 || !gl.IsTexture(name)) return false;

@@ -8,8 +8,12 @@ struct TextureFacts {
   GLint width = 0, height = 0, format = 0;
 };
 
-// False when `name` is no 2D texture of this context with storage at level 0. Uses and puts back unit `unit`'s binding.
+// False when `name` is no 2D texture of this context with storage at level 0. Uses and puts back the active unit's
+// binding.
 bool factsOf(const GlFunctions& gl, GLuint name, TextureFacts& facts);
+// What a name is for which factsOf() is false, as a sentence ends: "no texture of this context", "a
+// GL_TEXTURE_2D_ARRAY".
+const char* kindOf(const GlFunctions& gl, GLuint name);
 
 // How `format` serves as depth, or 0: GL_DEPTH_ATTACHMENT or GL_DEPTH_STENCIL_ATTACHMENT.
 GLenum depthAttachment(GLint format);

@@ -26,26 +26,27 @@ layout(location = 0) out float frontZ;  // blended by MIN
 #include "gl/front_output.glsl"
 #endif
 #ifdef STAGE_RIMS
-vec3 seamAround;
-vec2 seamGradient;
+vec3 seamAround = vec3(0.0f);
+vec2 seamGradient = vec2(0.0f);
 bool seamIsRim = false;
 #endif
 
+// SCALE is a name that says which stage and permutation the text is for: with PLD_FLAG_VALIDATE pld_end() looks for it.
 PLD_FRAME_LAYOUT uniform PldFrame {
-  vec4 pldScale;       // metres per unit; pre-exposure; not 0: orthographic; PLD_OCCLUSION_*
+  vec4 SCALE;          // metres per unit; pre-exposure; not 0: orthographic; PLD_OCCLUSION_*
   vec4 pldWeight;      // range near, far in metres; exponent; pixels of a row of the largest picture
   vec4 pldRefraction;  // PLD_REFRACT_*; metres (at a distance); focal length in x and y, pixels
   vec4 pldDiffusion;   // k0, k1 metres; width and height of the picture
 };
 // What pld_fix() fixed is a constant; the rest is read from the block.
 #ifndef UNITS
-#define UNITS pldScale.x
+#define UNITS SCALE.x
 #endif
 #ifndef EXPOSURE
-#define EXPOSURE pldScale.y
+#define EXPOSURE SCALE.y
 #endif
 #ifndef ORTHOGRAPHIC
-#define ORTHOGRAPHIC (pldScale.z != 0.0f ? 1 : 0)
+#define ORTHOGRAPHIC (SCALE.z != 0.0f ? 1 : 0)
 #endif
 #ifndef EXPONENT
 #define RANGE_NEAR pldWeight.x
@@ -95,10 +96,10 @@ struct PldSurface {
   vec3 position;       // view space, scene units, the eye looks down -z
   // With refraction or diffusion; pldSurface() fills in a surface that does neither.
   vec3 normal;         // view space, unit, on the side of the eye
-  float eta;           // index outside over inside, green; 1 bends nothing
-  vec2 etaRedBlue;     // of red and blue, with dispersion; else as eta
-  float thickness;     // scene units, along the normal
-  float collimation;   // 1 clear, 0 scatters all
+  float eta;           // index outside over inside, green, > 0; 1 bends nothing
+  vec2 etaRedBlue;     // of red and blue, with dispersion; a component that is not > 0 is as eta
+  float thickness;     // scene units, along the normal, >= 0; PLD_REFRACT_THROUGH_SLAB alone reads it
+  float collimation;   // [0,1]: 1 clear, 0 scatters all
 };
 
 PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 position) {
@@ -109,7 +110,7 @@ PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 pos
   surface.position = position;
   surface.normal = vec3(0.0f, 0.0f, 1.0f);
   surface.eta = 1.0f;
-  surface.etaRedBlue = vec2(1.0f);
+  surface.etaRedBlue = vec2(0.0f);
   surface.thickness = 0.0f;
   surface.collimation = 1.0f;
   return surface;
@@ -229,9 +230,10 @@ void pldWriteFragment(PldSurface surface) {
     vec2 green = seamOffset(surface, surface.eta);
     offset = recordedOffset(green);
 #ifdef DISPERSION
-    if (surface.etaRedBlue != vec2(surface.eta))
-      dispersion = vec4(seamOffset(surface, surface.etaRedBlue.x) - green,
-                        seamOffset(surface, surface.etaRedBlue.y) - green);
+    float etaRed = surface.etaRedBlue.x > 0.0f ? surface.etaRedBlue.x : surface.eta;
+    float etaBlue = surface.etaRedBlue.y > 0.0f ? surface.etaRedBlue.y : surface.eta;
+    if (etaRed != surface.eta || etaBlue != surface.eta)
+      dispersion = vec4(seamOffset(surface, etaRed) - green, seamOffset(surface, etaBlue) - green);
 #endif
   }
 #endif
@@ -271,7 +273,7 @@ void pldWriteRim(PldSurface surface, vec3 around, vec2 gradient) {
 #ifdef RIMS_HERE
   if (isRim(surface.coverage)) {
     float z = -surface.position.z * UNITS;
-    precise float hidden = 1.0f - neighboursOcclusion(gradient, z, ivec2(gl_FragCoord.xy), int(pldScale.w));
+    precise float hidden = 1.0f - neighboursOcclusion(gradient, z, ivec2(gl_FragCoord.xy), int(SCALE.w));
     precise vec3 left = surface.radiance - hidden * around;
     surface.radiance = left;
   }

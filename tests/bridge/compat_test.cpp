@@ -1,32 +1,13 @@
 // Hosts that draw with the compatibility profile, and bind what they draw with before pld_begin(), not after it.
-#include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
+#include "tests/bridge/egl_context.h"
 #include "tests/bridge/gl_state.h"
 #include "tests/bridge/host.h"
 #include "tests/bridge/shadow_casters.h"
 
 namespace pellucid::test {
 namespace {
-
-// As hosts have it that ask for no profile.
-class CompatibleContext {
- public:
-  CompatibleContext()
-      : display_(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)) {
-    EXPECT_TRUE(eglInitialize(display_, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API));
-    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
-    EXPECT_TRUE(eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_));
-  }
-  ~CompatibleContext() {
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(display_, context_);
-  }
-
- private:
-  EGLDisplay display_;
-  EGLContext context_ = EGL_NO_CONTEXT;
-};
 
 constexpr uint32_t kAll = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
                           PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION;
@@ -42,7 +23,7 @@ void main() { pldWriteFragment(pldSurface(0.1 * texture(tint, vec2(0.5)).rgb, 0.
 )";
 
 TEST(BridgeCompatibility, DrawsWithWhatWasBoundBeforeBegin) {
-  CompatibleContext context;
+  const EglContext context(false);  // as hosts have it that ask for no profile
   GLint profile = 0;
   glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
   ASSERT_EQ(profile & GL_CONTEXT_CORE_PROFILE_BIT, 0) << "this device has no compatibility profile";

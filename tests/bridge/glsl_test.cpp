@@ -127,6 +127,58 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
+// What a driver has to say of a text that compiles: "used uninitialized" and the like, which it reports as severe.
+TEST(BridgeGlsl, TheTextsGiveNoWarnings) {
+  GlContext context;
+  static std::vector<std::string> severe;
+  severe.clear();
+  glEnable(GL_DEBUG_OUTPUT);
+  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageCallback(
+      [](GLenum, GLenum, GLuint, GLenum severity, GLsizei, const GLchar* text, const void*) {
+        if (severity == GL_DEBUG_SEVERITY_HIGH || severity == GL_DEBUG_SEVERITY_MEDIUM) severe.emplace_back(text);
+      },
+      nullptr);
+  Host host(16, 16);
+  constexpr uint32_t all = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
+                           PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION;
+  const std::pair<pld_tier, uint32_t> kinds[] = {{PLD_TIER_FLOAT, all},
+                                                 {PLD_TIER_FLOAT, PLD_FEATURE_RIMS},
+                                                 {PLD_TIER_HALF, PLD_FEATURE_RIMS | PLD_FEATURE_COLOURED},
+                                                 {PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS | PLD_FEATURE_REFRACTION},
+                                                 {PLD_TIER_EXACT, all}};
+  int compiled = 0;
+  for (const auto& [tier, features] : kinds) {
+    pld_create_info info = host.info();
+    info.tier = tier;
+    info.features = features;
+    info.fragments_per_pixel = 4.0f;
+    pld_pass* pass = host.create(info);
+    ASSERT_NE(pass, nullptr);
+    for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW})
+      for (const int version : {330, 450}) {
+        const char* seam = nullptr;
+        if (pld_glsl(pass, stage, version, &seam) != PLD_OK) continue;
+        // Of a material without rims, which leaves what a rim would say as it is.
+        const GLuint program =
+            makeProgram(kFullscreenVertex, "#version " + std::to_string(version) + " core\n" + seam +
+                                               "void main() { pldWriteFragment(pldSurface(vec3(0.2), 0.5, vec3(0.5), "
+                                               "vec3(0.0, 0.0, -3.0))); }\n");
+        ASSERT_NE(program, 0u);
+        glDeleteProgram(program);
+        ++compiled;
+        for (const std::string& text : severe) ADD_FAILURE() << "stage " << stage << ", " << version << ": " << text;
+        severe.clear();
+      }
+    pld_destroy(&pass);
+  }
+  EXPECT_GT(compiled, 15);
+  // The callback is called: by a text that is worth a warning.
+  severe.clear();
+  makeProgram(kFullscreenVertex, "#version 450 core\nout vec4 c;\nvec4 v;\nvoid main() { c = v; }\n");
+  EXPECT_FALSE(severe.empty());
+}
+
 // Twice in one shader, as includes happen to be.
 TEST(BridgeGlsl, TheTextGuardsItself) {
   GlContext context;

@@ -19,10 +19,11 @@
 
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR                                                                          \
-  4 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
+  5 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
        rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,    \
        the exact tier; refraction and diffusion without PLD_FEATURE_LIGHT keep no light that adds, \
-       which is implied for hosts of before.                                                       \
+       which is implied for hosts of before. 0.5: PLD_FLAG_VALIDATE, pld_create_info.message; what \
+       was misused in silence is refused, for hosts of before as far as it did not work for them.  \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -57,7 +58,9 @@ typedef PLD_ENUM(pld_status){
     PLD_ERROR_UNSUPPORTED = 8, /* neither this device nor this version has it */
     PLD_ERROR_MEMORY = 9,      /* the device, or the machine, has no room */
     PLD_ERROR_BUSY = 10,       /* another thread is inside a call with this pass */
-    PLD_ERROR_INTERNAL = 11    /* a mistake of this library; the message holds the driver's words */
+    PLD_ERROR_INTERNAL = 11,   /* a mistake of this library; the message holds the driver's words */
+    PLD_ERROR_MISUSE = 12      /* PLD_FLAG_VALIDATE: between a begin and its end the host did what it must not. The end
+                                  has been made all the same, and the stage counts as drawn */
 } pld_status;
 
 /* As eglGetProcAddress, glXGetProcAddress, SDL_GL_GetProcAddress; `user` is passed through. */
@@ -88,7 +91,8 @@ typedef PLD_ENUM(pld_tier){
 typedef PLD_ENUM(pld_feature){
     PLD_FEATURE_COLOURED = 1,   /* some material transmits colour; without it one opacity serves all channels */
     PLD_FEATURE_LIGHT = 2,      /* some material adds light: coverage 0, or transmission above .999 in a channel;
-                                   without it such light is lost */
+                                   without it such light is lost. Not in the published tier, which has no plane for
+                                   it */
     PLD_FEATURE_REFRACTION = 4, /* clear glass, which lets more than .999 through, needs PLD_FEATURE_LIGHT besides */
     PLD_FEATURE_DIFFUSION = 8,
     PLD_FEATURE_DISPERSION = 16, /* refraction of its own for red and blue; not in the published tier */
@@ -106,12 +110,22 @@ typedef PLD_ENUM(pld_feature){
            --method front+tail, which it works out from all fragments) */
 } pld_feature;
 
+/* Diagnostics, for pld_create_info.flags. */
 typedef PLD_ENUM(pld_flag){
-    PLD_FLAG_HOST_RESTORES = 1, /* nothing is saved or put back: the host sets all state of INTEGRATION.md itself */
-    PLD_FLAG_TIMERS = 2,        /* GPU times of every stage, see pld_query() */
-    PLD_FLAG_DEBUG_GROUPS = 4,  /* KHR_debug groups around every stage */
-    PLD_FLAG_DEBUG_VIEWS = 8    /* pld_target.view may ask for a plane instead of the picture */
+    PLD_FLAG_TIMERS = 2,       /* GPU times of every stage, see pld_query() */
+    PLD_FLAG_DEBUG_GROUPS = 4, /* KHR_debug groups around every stage */
+    PLD_FLAG_DEBUG_VIEWS = 8,  /* pld_target.view may ask for a plane instead of the picture */
+    PLD_FLAG_VALIDATE = 16     /* pld_end() and pld_shadow_end() look at what the host did since the begin, and say of
+                                  the first thing that is wrong what it is, with PLD_ERROR_MISUSE: the framebuffer,
+                                  viewport, blending, colour masks or depth test are others; the seam's textures and
+                                  buffers are; or, if anything was drawn, the program that is in use holds no text of
+                                  this pass, that of another stage or pass, or is not connected. It waits for the
+                                  device at every end, and counts GL_PRIMITIVES_GENERATED. Keep the last program in use
+                                  until the end; those of pipelines are not looked into */
 } pld_flag;
+/* Not a diagnostic but a contract, for pld_create_info.flags too: nothing is saved or put back, and the host sets all
+   state of INTEGRATION.md itself. */
+#define PLD_FLAG_HOST_RESTORES 1u
 
 typedef PLD_ENUM(pld_weight){PLD_WEIGHT_BY_EQ5 = 0, /* McGuire and Mara 2017, eq. 5 */
                              PLD_WEIGHT_BY_EQ7 = 1, /* McGuire and Bavoil 2013, eqs. 7 to 10 as printed */
@@ -142,7 +156,7 @@ typedef struct pld_create_info {
   pld_method method;
   pld_tier tier;
   uint32_t features; /* pld_feature, or-ed */
-  uint32_t flags;    /* pld_flag, or-ed */
+  uint32_t flags;    /* pld_flag and PLD_FLAG_HOST_RESTORES, or-ed */
   pld_weight weight;
   pld_depth depth;
   pld_clip clip;
@@ -155,8 +169,11 @@ typedef struct pld_create_info {
                                 PLD_METHOD_FRONT_TAIL) rims, 68 with dispersion. Where more come,
                                 pld_end() returns PLD_ERROR_MEMORY */
   uint32_t storage_binding;  /* PLD_TIER_EXACT: the first of three shader storage bindings, four with refraction,
-                                diffusion or  (not under PLD_METHOD_FRONT_TAIL) rims, five with dispersion, that the seam
-                                writes to while stages are drawn */
+                                diffusion or (not under PLD_METHOD_FRONT_TAIL) rims, five with dispersion, that the seam
+                                writes to while stages are drawn. 0.3 ended before fragments_per_pixel */
+  char* message;             /* null, or room for message_size bytes: where pld_create() says why it fails, since there
+                                is no pass yet that pld_message() could be asked of; "" where it does not */
+  size_t message_size;       /* 0.4 ended before message */
 } pld_create_info;
 
 typedef PLD_ENUM(pld_refract){
@@ -171,6 +188,9 @@ typedef PLD_ENUM(pld_occlusion){
     PLD_OCCLUSION_PUBLISHED = 1 /* McGuire and Mara 2017, listing 2 as printed */
 } pld_occlusion;
 
+/* Numbers that a pass does not read - refract_distance but of PLD_REFRACT_AT_DISTANCE, diffusion_k0 and _k1 without
+   PLD_FEATURE_DIFFUSION, weight_exponent but of PLD_WEIGHT_BY_POWER - may have any value, 0 too, but NaN and
+   infinity. */
 typedef struct pld_frame {
   uint32_t struct_size;    /* sizeof(pld_frame) */
   uint32_t colour_texture; /* lit opaque picture, scene-linear, premultiplied; read by pld_resolve() */
@@ -312,7 +332,8 @@ typedef struct pld_shadow_view {
   float projection[16];        /* clip from that view space: orthographic or, local, perspective with w = -z. Of six
                                   faces all are square and a little wider than 90 degrees; a face owns its 90 */
   float near_depth, far_depth; /* where casters lie, scene units, near < far: along -z, of a local light far_depth is
-                                  the greatest distance and near_depth is not used */
+                                  the greatest distance and near_depth is not used. The origin of a sun's view may lie
+                                  anywhere, among its casters too: near_depth is negative then */
   uint32_t depth_texture;      /* 0, or what is opaque as this view sees it, depth of size x size: casters behind it, by
                                   LEQUAL or, with PLD_DEPTH_REVERSED, GEQUAL, are left out */
 } pld_shadow_view;
@@ -331,7 +352,7 @@ PLD_API pld_status pld_weight_named(const char* name, pld_weight* weight);
 
 /* Order of calls: create, fix if wanted, resize, then frames of { begin, draws, end } for every stage, solids, front,
    layers, rims, low, and resolve. resize and destroy lie between frames. A frame may be given up: pld_end(), then begin
-   its first stage again. */
+   its first stage again. Where pld_create() fails *pass is null, and info.log and info.message say why. */
 PLD_API pld_status pld_create(const pld_create_info* info, pld_pass** pass);
 /* Before pld_glsl(): what `fields` (pld_fixed, or-ed) names of every frame is as in this one, of which nothing else is
    read. The texts hold it as constants, which costs less than reading it; pld_begin() refuses a frame that has another.
@@ -355,10 +376,42 @@ PLD_API pld_status pld_destroy(pld_pass** pass);
 
 /* The GLSL that a material's fragment shader holds for a stage, after its #version line: pldWriteFragment() and the
    outputs. For GLSL `version` 330 to 460, in PLD_TIER_EXACT from 430. The text is the pass's and lives until it is
-   asked for again or destroyed. */
+   asked for again or destroyed. It declares
+
+     struct PldSurface {     one shaded transparent surface under this fragment
+       vec3 radiance;        coverage * reflected + emitted, premultiplied, scene-linear, >= 0
+       float coverage;       part of the pixel it touches, [0,1]; 0 for light that adds and hides nothing
+       vec3 transmission;    colour let straight through where it touches, at the actual angle, [0,1]
+       vec3 position;        view space, scene units; the eye looks down -z, and z >= 0 is discarded
+     with refraction or diffusion, and filled in by pldSurface():
+       vec3 normal;          view space, unit, on the side of the eye
+       float eta;            index outside over inside, of green, > 0; 1 bends nothing. Only front faces refract
+       vec2 etaRedBlue;      of red and blue, with dispersion; a component that is not > 0 is as eta
+       float thickness;      scene units, along the normal, >= 0; for PLD_REFRACT_THROUGH_SLAB
+       float collimation;    [0,1]: 1 clear, 0 scatters all
+     };
+     PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 position);
+         a surface that neither refracts nor diffuses: eta 1, etaRedBlue 0, thickness 0, collimation 1
+     void pldWriteFragment(PldSurface surface);
+         where a colour was written, at one place of the shader: each call is inlined whole. It may discard
+     void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, vec2 offset,
+                        float variance, vec4 dispersion);
+         the same, for hosts that know what scattering does: radiance with its exposure, z planar metres,
+         offset in pixels with y down, variance in pixels^2, dispersion: the offsets of red and of blue
+         less `offset`
+
+   and with PLD_FEATURE_RIMS
+
+     vec2 pldCoverageGradient(float coverage);
+         its change per pixel in x and y: where control flow is uniform, before any discard
+     void pldWriteRim(PldSurface surface, vec3 around, vec2 gradient);
+         in place of pldWriteFragment() for cut-out surfaces; around: the part of surface.radiance that
+         ambient occlusion darkens; gradient: pldCoverageGradient()
+
+   What is out of its range is clamped; NaN is not looked for. */
 PLD_API pld_status pld_glsl(pld_pass* pass, pld_stage stage, int32_t version, const char** text);
-/* Connects the uniform blocks and samplers of all texts that a linked program holds. Needed once per program below GLSL
-   4.20; of PLD_SHADOW_TEXT_LOOKUP after pld_shadow_resize(). */
+/* Connects the uniform blocks and samplers of all texts that a linked program holds; refuses one that holds none.
+   Needed once per program below GLSL 4.20; of PLD_SHADOW_TEXT_LOOKUP after pld_shadow_resize(). */
 PLD_API pld_status pld_connect(pld_pass* pass, uint32_t program);
 
 /* Room for shadow maps; null gives it back. The same info again keeps the maps; any other loses them. */
@@ -368,7 +421,29 @@ PLD_API pld_status pld_shadow_resize(pld_pass* pass, const pld_shadow_info* info
 PLD_API pld_status pld_shadow_begin(pld_pass* pass, const pld_shadow_view* view);
 /* Filters the face, and puts back the state that pld_shadow_begin() found. */
 PLD_API pld_status pld_shadow_end(pld_pass* pass);
-/* As pld_glsl(). The texts fit the info of the last pld_shadow_resize(), and no other. */
+/* As pld_glsl(). The texts fit the info of the last pld_shadow_resize(), and no other. That of casters declares
+
+     struct PldCaster {      one transparent surface as its light sees it
+       float coverage;       part of the texel it touches, [0,1]; 0 casts nothing
+       vec3 transmission;    colour let straight through where it touches, at the light's angle, [0,1]
+       vec3 position;        the light's view space, scene units; z < 0 of local lights, any z of a sun's
+       vec3 normal;          there, unit, on either side
+       float eta;            index outside over inside: below 1 it makes a caustic; not > 0 is as 1
+       uint identity;        of the triangle, the same every frame: pldCasterIdentity()
+     };
+     uint pldCasterIdentity(uint instance, uint triangle);
+         instance: a number for the object; triangle: within it, gl_PrimitiveID
+     void pldWriteCaster(PldCaster caster);
+         it may discard
+
+   and that of lookups, whose `light` is pld_shadow_view.light and whose `point` lies in the space that
+   light_from_scene starts from,
+
+     vec3 pldShadow(int light, vec3 point);
+         RGB part of the light that transparent casters leave, [0,1], 1 where no map reaches: in the air or
+         on a transparent surface
+     vec3 pldShadowOnOpaque(int light, vec3 point);
+         the same on an opaque surface, which every caster that its texel knows stands before */
 PLD_API pld_status pld_shadow_glsl(pld_pass* pass, pld_shadow_text which, int32_t version, const char** text);
 
 /* What the last call that failed on this pass said: one sentence; "" when none did. Lives until the next call. */
