@@ -1,7 +1,11 @@
-# Debian 12 packages; ./dev installs them.
+# Debian 12 packages; ./dev installs them. The C library needs the first two alone, and nothing but headers of them.
+find_package(glm REQUIRED)
+find_path(GLCOREARB_INCLUDE GL/glcorearb.h REQUIRED)
+if(NOT PELLUCID_ROOMS)
+  return()
+endif()
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
-find_package(glm REQUIRED)
 find_package(Imath CONFIG REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
 find_package(OpenImageIO CONFIG REQUIRED)

@@ -51,7 +51,7 @@ TEST(BridgeInstall, TheLibraryShowsItsInterfaceAndNothingElse) {
   for (std::sregex_iterator i(header.begin(), header.end(), function), end; i != end; ++i) declared.insert((*i)[1]);
   std::printf("libpellucid_c.so: %zu symbols shown, %zu declared\n", shown.size(), declared.size());
   EXPECT_EQ(shown, declared);
-  EXPECT_EQ(declared.size(), 17u);
+  EXPECT_EQ(declared.size(), 18u);
   const Ended needed = shell("objdump -p '" + folder + "/prefix/lib/libpellucid_c.so' | grep NEEDED", folder);
   for (const char* library : {"libGL", "libEGL", "libepoxy", "libOpen", "libfmt"})
     EXPECT_EQ(needed.out.find(library), std::string::npos) << needed.out;
@@ -93,6 +93,51 @@ TEST(BridgeInstall, AnOutsidePkgConfigProjectBuildsAndRenders) {
             folder);
   EXPECT_EQ(rooms.code, 0) << rooms.out;
   EXPECT_NE(rooms.out.find("composited"), std::string::npos) << rooms.out;
+}
+
+// Each component by itself: what an engine ships, what it builds with, what it reads.
+TEST(BridgeInstall, ComponentsStandAlone) {
+  const std::string folder = freshFolder("bridge-install-components");
+  const std::pair<const char*, std::vector<const char*>> components[] = {
+      {"c", {"lib/libpellucid_c.so.0"}},
+      {"dev",
+       {"lib/libpellucid_c.so", "include/pellucid/pellucid.h", "lib/cmake/pellucid/pellucidConfig.cmake",
+        "lib/cmake/pellucid/pellucid-c.cmake", "lib/pkgconfig/pellucid.pc"}},
+      {"docs", {"share/doc/pellucid/LICENSE", "share/doc/pellucid/INTEGRATION.md"}}};
+  std::uintmax_t bytes = 0;
+  for (const auto& [component, files] : components) {
+    const std::string prefix = folder + "/" + component;
+    const Ended ended = shell(
+        "cmake --install '" PELLUCID_BINARY_DIR "' --prefix '" + prefix + "' --component " + std::string(component),
+        folder);
+    ASSERT_EQ(ended.code, 0) << ended.out;
+    for (const char* file : files)
+      EXPECT_TRUE(std::filesystem::is_symlink(prefix + "/" + file) || std::filesystem::exists(prefix + "/" + file))
+          << component << ": " << file;
+    EXPECT_FALSE(std::filesystem::exists(prefix + "/include/pellucid-rooms")) << component;
+    EXPECT_FALSE(std::filesystem::exists(prefix + "/bin")) << component;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(prefix))
+      if (entry.is_regular_file() && !entry.is_symlink()) bytes += entry.file_size();
+  }
+  std::printf("components c, dev and docs: %.1f MB\n", static_cast<double>(bytes) / 1e6);
+  if (!sanitized()) {
+    EXPECT_LE(bytes, 8u << 20);
+  }
+}
+
+// The C library alone asks for no package but the headers of glm and of OpenGL.
+TEST(BridgeInstall, TheCLibraryConfiguresWithoutTheRoomsPackages) {
+  const std::string folder = freshFolder("bridge-install-alone");
+  std::string without;
+  for (const char* package : {"Threads", "ZLIB", "Imath", "OpenEXR", "OpenImageIO", "TBB", "embree", "fmt", "spdlog",
+                              "CLI11", "nlohmann_json", "draco", "meshoptimizer", "PkgConfig", "GTest"})
+    without += std::string(" -DCMAKE_DISABLE_FIND_PACKAGE_") + package + "=ON";
+  const Ended alone =
+      shell("cmake -S '" PELLUCID_SOURCE_DIR "' -B '" + folder + "/build' -DPELLUCID_ROOMS=OFF" + without, folder);
+  EXPECT_EQ(alone.code, 0) << alone.out;
+  // What is kept away is what the rooms need.
+  const Ended whole = shell("cmake -S '" PELLUCID_SOURCE_DIR "' -B '" + folder + "/whole'" + without, folder);
+  EXPECT_NE(whole.code, 0);
 }
 
 }  // namespace
