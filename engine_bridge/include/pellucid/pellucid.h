@@ -23,7 +23,7 @@
        rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,    \
        the exact tier; refraction and diffusion without PLD_FEATURE_LIGHT keep no light that adds, \
        which is implied for hosts of before. 0.5: PLD_FLAG_VALIDATE, pld_create_info.message; what \
-       was misused in silence is refused, for hosts of before as far as it did not work for them.  \
+       could be misused in silence is refused, and to hosts of before said as a warning.           \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
