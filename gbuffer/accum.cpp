@@ -1,31 +1,14 @@
 #include "gbuffer/accum.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 
-#include "gbuffer/errors.h"
+#include "gbuffer/planes_match.h"
 
 namespace pellucid {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-
-void expectSame(const char* what, const std::string& found, const std::string& expected) {
-  if (found != expected)
-    throw MeaningError(
-        fmt::format("OIT planes: {}: found {}, expected {} as in the planes before", what, found, expected));
-}
-
-std::string windowText(const Window& window) {
-  return fmt::format("({} {}) - ({} {})", window.x0, window.y0, window.x1 - 1, window.y1 - 1);
-}
-
-bool sameProjection(const Camera& a, const Camera& b) {
-  return a.viewFromWorld == b.viewFromWorld && a.orthographic == b.orthographic && a.focal == b.focal &&
-         a.centre == b.centre;
-}
 
 void add(Image<glm::vec4>& to, const Image<glm::vec4>& from) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
@@ -67,15 +50,11 @@ void addDispersionPlane(OitPlanes& planes) {
 }
 
 void mergePlanes(OitPlanes& a, const OitPlanes& b) {
-  expectSame("display window", windowText(b.display), windowText(a.display));
-  expectSame("data window", windowText(b.data), windowText(a.data));
-  expectSame("method", b.info.method, a.info.method);
-  expectSame("weight", weightText(b.info.weight), weightText(a.info.weight));
-  expectSame("normalisation", std::to_string(b.info.normalisation), std::to_string(a.info.normalisation));
-  expectSame("tier", b.info.tier, a.info.tier);
-  expectSame("solid hash", b.info.solidHash, a.info.solidHash);
-  if (!sameProjection(a.camera, b.camera))
-    throw MeaningError("OIT planes: camera: found another position or lens, expected that of the planes before");
+  mergePlanes(a, b, "the planes before", "OIT planes");
+}
+
+void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, const std::string& fileB) {
+  expectSamePlanes(b, fileB, a, fileA);
   add(a.radiance, b.radiance);
   add(a.weight, b.weight);
   add(a.opacity, b.opacity);

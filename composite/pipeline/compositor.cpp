@@ -7,6 +7,7 @@
 #include "composite/antialias.h"
 #include "composite/pipeline/fit.h"
 #include "composite/pipeline/foliage_step.h"
+#include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/sums.h"
 #include "gbuffer/weight_text.h"
@@ -80,6 +81,11 @@ Compositor::Run Compositor::prepare(const Request& request) {
   return run;
 }
 
+void Compositor::noteNothing(bool shows) {
+  if (!shows && !nothingNoted_) noteThatNothingShows(*shot_, journal_);
+  nothingNoted_ = nothingNoted_ || !shows;
+}
+
 Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal,
                        RunCounts& counts) {
   const PaintContext context{plan, *shot_, run.lighting->picture, *run.sources, device_, journal, counts};
@@ -106,6 +112,7 @@ Result Compositor::run(const Request& request) {
   result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
   const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
   for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
+  noteNothing(anyTouched(result.picture.touched));
   if (request.measure) {
     Journal truth = journal_.beside();
     RunCounts unused;
@@ -138,6 +145,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
   RunCounts counts;
   const Plan sums = sumsPlanOf(run.plan, facts_);
   const PaintContext context{sums, *shot_, run.lighting->picture, *run.sources, device_, journal_, counts};
+  bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, i, run.plan.passes);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
@@ -148,8 +156,10 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
     if (request.foliage.rule == FoliageRule::apart && triangles())
       made.rims = journal_.time("rims", [&] { return triangles()->rims(fullResolutionPart(sums, sample)); });
     if (!made.rims.empty()) ++counts.passes;
+    shows = shows || anyLayers(made.planes);
     each(std::move(made));
   }
+  noteNothing(shows);
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   return counts;
 }
@@ -163,6 +173,7 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
       sink(lists);
     });
   });
+  noteNothing(counts.fragments > 0);
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   return counts;
 }

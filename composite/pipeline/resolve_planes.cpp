@@ -1,20 +1,19 @@
 #include "composite/pipeline/resolve_planes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "composite/occluders.h"
+#include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/resolve_step.h"
 #include "composite/rims.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/planes_io.h"
+#include "gbuffer/planes_match.h"
 
 namespace pellucid {
 namespace {
-
-std::string windowText(const Window& window) {
-  return fmt::format("({}, {})-({}, {})", window.x0, window.y0, window.x1 - 1, window.y1 - 1);
-}
 
 void checkRims(const RimRequest& request, bool apart) {
   const std::pair<bool, const char*> given[] = {{request.infer.has_value(), "--occlusion"},
@@ -72,12 +71,12 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   for (std::size_t i = 1; i < request.planes.size(); ++i)
     journal.time("read planes", [&] {
       RimPlanes more;
-      mergePlanes(planes, readPlanes(request.planes[i], &more));
+      mergePlanes(planes, readPlanes(request.planes[i], &more), request.planes[0], request.planes[i]);
       rims.add(more);
     });
-  if (planes.data != gbuffer.data)
-    throw MeaningError(fmt::format("{}: found data window {}, expected {} of {}", request.planes[0],
-                                   windowText(planes.data), windowText(gbuffer.data), request.opaque));
+  expectPlanesOf(gbuffer, request.opaque, planes, request.planes[0]);
+  if (!anyLayers(planes))
+    journal.note(fmt::format("{}: the planes hold no layer: nothing changes", fmt::join(request.planes, ", ")));
   journal.time("occlusion of leaves", [&] { occludeRims(request.rims, rims, gbuffer, planes, journal); });
   result.info = planes.info;
   if (planes.published())

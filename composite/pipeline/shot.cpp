@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "composite/pipeline/same_cameras.h"
 #include "engine_bridge/embree/environment.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/part_camera.h"
@@ -117,14 +118,9 @@ bool isExrName(const std::string& path) {
 Camera chooseCamera(const CameraChoice& choice, const GBuffer& gbuffer, const Scene& scene,
                     const std::string& opaquePath) {
   if (const auto* placed = std::get_if<PlacedCamera>(&choice)) return placedCamera(*placed, gbuffer);
-  if (const auto* named = std::get_if<NamedCamera>(&choice)) {
-    for (const SceneCamera& camera : scene.cameras)
-      if (camera.name == named->name) return cameraOf(camera, gbuffer.display, gbuffer.pixelAspect);
-    throw UsageError(fmt::format("--camera: found '{}', expected one of the scene's cameras ({})", named->name,
-                                 namesOf(scene.cameras)));
-  }
+  if (const auto* named = std::get_if<NamedCamera>(&choice)) return namedCamera(named->name, scene, gbuffer);
   if (gbuffer.camera) return *gbuffer.camera;
-  if (scene.cameras.size() == 1) return cameraOf(scene.cameras[0], gbuffer.display, gbuffer.pixelAspect);
+  if (allOneCamera(scene.cameras, gbuffer)) return cameraOf(scene.cameras[0], gbuffer.display, gbuffer.pixelAspect);
   if (scene.cameras.empty())
     throw MeaningError(
         fmt::format("{}: no camera: found neither worldToCamera and worldToNDC attributes nor a glTF camera, expected "

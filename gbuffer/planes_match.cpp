@@ -1,0 +1,58 @@
+#include "gbuffer/planes_match.h"
+
+#include <fmt/format.h>
+
+#include "gbuffer/camera_match.h"
+#include "gbuffer/errors.h"
+#include "gbuffer/weight_text.h"
+
+namespace pellucid {
+namespace {
+
+std::string windowText(const Window& window) {
+  return fmt::format("({}, {}) to ({}, {})", window.x0, window.y0, window.x1 - 1, window.y1 - 1);
+}
+
+// Compares what two files say of one thing.
+struct Pair {
+  const std::string &file, &other;
+
+  void expect(const char* what, const std::string& found, const std::string& expected) const {
+    if (found != expected) refuse(what, found, expected);
+  }
+  void expect(const char* what, const Window& found, const Window& expected) const {
+    if (found != expected) refuse(what, windowText(found), windowText(expected));
+  }
+  void expectView(const Camera& found, const Camera& expected) const {
+    if (!sameView(found, expected)) refuse("camera", viewText(found), viewText(expected));
+  }
+  [[noreturn]] void refuse(const char* what, const std::string& found, const std::string& expected) const {
+    throw MeaningError(fmt::format("{}: {}: found {}, expected {} as in {}", file, what, found, expected, other));
+  }
+};
+
+}  // namespace
+
+void expectSamePlanes(const OitPlanes& planes, const std::string& file, const OitPlanes& before,
+                      const std::string& fileBefore) {
+  const Pair pair{file, fileBefore};
+  pair.expect("display window", planes.display, before.display);
+  pair.expect("data window", planes.data, before.data);
+  pair.expectView(planes.camera, before.camera);
+  pair.expect("method", planes.info.method, before.info.method);
+  pair.expect("weight", weightText(planes.info.weight), weightText(before.info.weight));
+  pair.expect("normalisation", std::to_string(planes.info.normalisation), std::to_string(before.info.normalisation));
+  pair.expect("tier", planes.info.tier, before.info.tier);
+  pair.expect("solid hash", planes.info.solidHash, before.info.solidHash);
+}
+
+void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,
+                    const std::string& file) {
+  const Pair pair{file, pictureFile};
+  pair.expect("display window", planes.display, picture.display);
+  pair.expect("data window", planes.data, picture.data);
+  const bool overruled = planes.camera.origin.find("--camera") != std::string::npos;
+  if (picture.camera && !overruled) pair.expectView(planes.camera, *picture.camera);
+}
+
+}  // namespace pellucid
