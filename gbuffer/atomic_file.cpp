@@ -90,18 +90,40 @@ void syncPath(const std::string& path, const std::string& target, int flags) {
     throw ResourceError(fmt::format("{}: cannot be written: {}", target, strerror(error)));
 }
 
+struct Existing {
+  bool found = false;
+  mode_t mode = 0;
+};
+
+// What stands at the target, whose links lead to `destination`. Throws ResourceError when it cannot be replaced.
+Existing existingAt(const std::string& target, std::string& destination) {
+  if (target.empty()) throw ResourceError("cannot write a file without a name, expected a path");
+  destination = resolveLinks(target);
+  struct stat existing {};
+  if (::stat(destination.c_str(), &existing) != 0) return {};
+  if (!S_ISREG(existing.st_mode))
+    throw ResourceError(fmt::format("{}: cannot be written: found a {}, expected a file or nothing", target,
+                                    S_ISDIR(existing.st_mode) ? "folder" : "device"));
+  if (::access(destination.c_str(), W_OK) != 0)
+    throw ResourceError(fmt::format("{}: cannot be written: {}", target, strerror(errno)));
+  return {true, existing.st_mode};
+}
+
 }  // namespace
 
+void expectWritable(const std::string& target) {
+  std::string destination;
+  existingAt(target, destination);
+  const std::string folder = folderOf(destination);
+  struct stat status {};
+  int error = ::stat(folder.c_str(), &status) != 0 ? errno : S_ISDIR(status.st_mode) ? 0 : ENOTDIR;
+  if (error == 0 && ::access(folder.c_str(), W_OK | X_OK) != 0) error = errno;
+  if (error != 0)
+    throw ResourceError(fmt::format("{}: cannot be written in folder {}: {}", target, folder, strerror(error)));
+}
+
 AtomicFile::AtomicFile(std::string target) : target_(std::move(target)) {
-  if (target_.empty()) throw ResourceError("cannot write a file without a name, expected a path");
-  destination_ = resolveLinks(target_);
-  struct stat existing {};
-  const bool exists = ::stat(destination_.c_str(), &existing) == 0;
-  if (exists && !S_ISREG(existing.st_mode))
-    throw ResourceError(fmt::format("{}: cannot be written: found a {}, expected a file or nothing", target_,
-                                    S_ISDIR(existing.st_mode) ? "folder" : "device"));
-  if (exists && ::access(destination_.c_str(), W_OK) != 0)
-    throw ResourceError(fmt::format("{}: cannot be written: {}", target_, strerror(errno)));
+  const Existing existing = existingAt(target_, destination_);
   temporary_ = temporaryName(destination_);
   if (temporary_.size() >= PATH_MAX) throw ResourceError(fmt::format("{}: the path is too long", target_));
   slot_ = takeSlot();
@@ -115,7 +137,7 @@ AtomicFile::AtomicFile(std::string target) : target_(std::move(target)) {
         fmt::format("{}: cannot be written in folder {}: {}", target_, folderOf(destination_), strerror(error)));
   }
   // Owner and permissions are a courtesy: a file system that cannot keep them still takes the picture.
-  if (exists && ::fchmod(descriptor, existing.st_mode & 07777) != 0) errno = 0;
+  if (existing.found && ::fchmod(descriptor, existing.mode & 07777) != 0) errno = 0;
   ::close(descriptor);
 }
 

@@ -1,21 +1,17 @@
 #include <cstdio>
 #include <new>
 
+#include "composite/cli/help_groups.h"
 #include "composite/cli/messages.h"
+#include "composite/cli/suggest.h"
+#include "composite/cli/verb_outputs.h"
 #include "composite/cli/verbs.h"
 #include "gbuffer/atomic_file.h"
 #include "gbuffer/errors.h"
 
-#ifndef PELLUCID_VERSION
-#define PELLUCID_VERSION "0.1.0"
-#endif
-
 namespace pellucid::cli {
 
-int run(int argc, const char* const* argv) {
-  setUpMessages();
-  cleanUpOnSignals();
-  CLI::App app{"Composites glass, smoke and foliage onto renders you already have.", "pellucid"};
+void addVerbs(CLI::App& app) {
   app.set_version_flag("--version", PELLUCID_VERSION);
   app.require_subcommand(1);
   addComposite(app);
@@ -28,7 +24,18 @@ int run(int argc, const char* const* argv) {
   addFlatten(app);
   addFragments(app);
   addStudy(app);
+  addHelp(app);
+  checkOutputsFirst(app);
+  setUpHelp(app);
+}
+
+int run(int argc, const char* const* argv) {
+  setUpMessages();
+  cleanUpOnSignals();
+  CLI::App app{"Composites glass, smoke and foliage onto renders you already have.", "pellucid"};
+  addVerbs(app);
   try {
+    checkWords(app, argc, argv);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& request) {  // --help, --version

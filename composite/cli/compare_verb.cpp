@@ -97,9 +97,14 @@ void addCompare(CLI::App& app) {
   verb->add_option("--warn", settings.warn.absolute, "As --fail, but only a warning")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  verb->add_option("--warnrelative", settings.warn.relative)->check(CLI::NonNegativeNumber)->capture_default_str();
-  verb->add_option("--warnpercent", settings.warn.percent)->check(percent)->capture_default_str();
-  verb->add_option("--hardwarn", settings.warn.hard)->check(CLI::NonNegativeNumber);
+  verb->add_option("--warnrelative", settings.warn.relative, "As --failrelative, but only a warning")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option("--warnpercent", settings.warn.percent, "As --failpercent, but only a warning")
+      ->check(percent)
+      ->capture_default_str();
+  verb->add_option("--hardwarn", settings.warn.hard, "As --hardfail, but only a warning")
+      ->check(CLI::NonNegativeNumber);
   verb->add_option("--metadata", flags->metadata, "What a differing attribute does")
       ->check(CLI::IsMember({"fail", "warn", "ignore"}))
       ->capture_default_str();

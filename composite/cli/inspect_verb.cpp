@@ -42,7 +42,7 @@ void addInspect(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("inspect", "What an EXR holds and how it is understood");
   verb->add_option("file", flags->file, "EXR");
   verb->add_flag("--devices", flags->devices, "List the GL devices");
-  verb->add_flag("--json", flags->json);
+  verb->add_flag("--json", flags->json, "Print results as JSON");
   flags->read.addTo(*verb);
   verb->callback([flags] { inspect(*flags); });
 }

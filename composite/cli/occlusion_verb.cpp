@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
@@ -69,6 +70,12 @@ Image<glm::vec3> indirectLight(const OpaqueFile& layer, const std::string& wante
   return light;
 }
 
+// What is said of any picture names its flags; those of the layer are called otherwise.
+std::string saidOfLayer(const std::string& text) {
+  static const std::regex beauty("--beauty(?![-\\w])"), depth("--depth(?![-\\w])");
+  return std::regex_replace(std::regex_replace(text, beauty, "--layer-beauty"), depth, "--layer-depth");
+}
+
 OpaqueFile readLayer(const OcclusionFlags& flags) {
   ReadOptions options = flags.read.options();
   options.beautyLayer = flags.layerBeauty;
@@ -134,7 +141,14 @@ void occlusionVerb(const OcclusionFlags& flags) {
     return interpretOpaque(std::move(first.document), flags.read.options(), &camera);
   });
   say(opaque.notes);
-  const OpaqueFile layer = stages.time("read layer", [&] { return readLayer(flags); });
+  OpaqueFile layer = stages.time("read layer", [&] {
+    try {
+      return readLayer(flags);
+    } catch (const Error& error) {
+      throw Error(error.exitCode(), saidOfLayer(error.what()));
+    }
+  });
+  for (std::string& note : layer.notes) note = saidOfLayer(note);
   say(layer.notes);
   if (layer.gbuffer.display != opaque.gbuffer.display)
     throw MeaningError(fmt::format("{}: found a display window of {}x{} at ({}, {}), expected {}x{} at ({}, {}) of {}",

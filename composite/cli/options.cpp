@@ -112,7 +112,7 @@ void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--lumens-per-watt", lumensPerWatt, "glTF lights are photometric, renders are not")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb.add_option("--texture-filter", textureFilter)
+  verb.add_option("--texture-filter", textureFilter, "How textures are read where a texel is not a pixel")
       ->check(CLI::IsMember({"mipmap", "bilinear", "nearest"}))
       ->capture_default_str();
   verb.add_option("--mask", mask, "Edges of alpha-tested materials")
@@ -213,9 +213,11 @@ void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
 }
 
 void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
-  normalisationOption_ = verb.add_option("--normalisation", normalisation)
-                             ->check(CLI::IsMember({"spectral", "published"}))
-                             ->capture_default_str();
+  normalisationOption_ =
+      verb.add_option("--normalisation", normalisation,
+                      "What the weighted mean of the layers is divided by: per channel, or one number as published")
+          ->check(CLI::IsMember({"spectral", "published"}))
+          ->capture_default_str();
   weightOption_ = verb.add_option("--weight", weight,
                                   weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
                       ->capture_default_str();

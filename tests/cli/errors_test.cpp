@@ -95,9 +95,15 @@ TEST_F(Errors, NoCameraAndTwoCameras) {
   writeGlb(folder + "/blind.glb", {Quad{}}, none);
   before = filesIn(folder);
   EXPECT_NE(expectFailure(composite("opaque.exr", "blind.glb"), 4).find("camera"), std::string::npos);
+  GlbOptions wide;
+  wide.yfov = 1.2;
+  writeGlb(folder + "/wide.glb", {Quad{}}, wide);
+  before = filesIn(folder);
   std::vector<std::string> both = composite("opaque.exr", "glass.glb");
-  both.insert(both.begin() + 2, "glass.glb");
+  both.insert(both.begin() + 2, "wide.glb");
   EXPECT_NE(expectFailure(both, 4).find("2 cameras"), std::string::npos);
+  both.insert(both.end(), {"--camera", "cam"});
+  EXPECT_NE(expectFailure(both, 2).find("differ"), std::string::npos);
   EXPECT_NE(expectFailure(composite("opaque.exr", "glass.glb", {"--camera", "other"}), 2).find("other"),
             std::string::npos);
   RunOptions options;
@@ -156,6 +162,40 @@ TEST_F(Errors, FullDisk) {
             6);
 }
 
+TEST_F(Errors, OutputsAreRefusedBeforeAnythingIsRead) {
+  // The inputs do not exist: whoever opened one would say so.
+  for (const char* name : {"out.png", "out.jpg", "out", "out.exr.txt"}) {
+    EXPECT_NE(expectFailure({"composite", "none.exr", "none.glb", "-o", name}, 2).find(name), std::string::npos);
+    expectFailure({"gbuffer", "none.glb", "--size", "8x8", "-o", name}, 2);
+    expectFailure({"accumulate", "none.exr", "none.glb", "-o", name}, 2);
+    expectFailure({"fragments", "none.exr", "none.glb", "-o", name}, 2);
+    expectFailure({"resolve", "none.exr", "none-planes.exr", "-o", name}, 2);
+    expectFailure({"occlusion", "none.exr", "none-layer.exr", "-o", name}, 2);
+    expectFailure({"flatten", "none.exr", "-o", name}, 2);
+  }
+  expectFailure({"study", "none.exr", "none.glb", "-o", "out.exr"}, 2);
+  expectFailure({"compare", "none.exr", "none.exr", "--html", "out.exr"}, 2);
+  EXPECT_NE(expectFailure({"composite", "none.exr", "none.glb", "-o", "nowhere/out.exr"}, 6).find("nowhere"),
+            std::string::npos);
+  EXPECT_NE(expectFailure({"composite", "out.exr", "none.glb", "-o", "./out.exr"}, 2).find("input"), std::string::npos);
+  EXPECT_NE(expectFailure({"composite", "none.exr", "none.glb", "-o", "new.exr", "--shadows", "stochastic",
+                           "--shadow-views", "new.exr"},
+                          2)
+                .find("--shadow-views"),
+            std::string::npos);
+}
+
+TEST_F(Errors, LayerFlagsAreNamedAsTheVerbHasThem) {
+  writeOpaque(folder + "/flat.exr", {.withDepth = false});
+  writeOpaque(folder + "/two.exr", {.withSecondDepth = true});
+  before = filesIn(folder);
+  for (const char* layer : {"flat.exr", "two.exr"}) {
+    const std::string line = expectFailure({"occlusion", "opaque.exr", layer, "-o", "out.exr"}, 4);
+    EXPECT_NE(line.find("--layer-depth"), std::string::npos) << line;
+    EXPECT_EQ(line.find("--depth"), std::string::npos) << line;
+  }
+}
+
 TEST_F(Errors, InterruptedRunsLeaveTheOldFile) {
   for (const auto& [sent, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
     RunOptions options;
@@ -182,6 +222,25 @@ TEST_F(Errors, PlanesThatDoNotMatch) {
   expectFailure({"resolve", "opaque.exr", "a.exr", "b.exr", "-o", "out.exr"}, 4);
   expectFailure({"resolve", "small.exr", "a.exr", "-o", "out.exr"}, 4);
   expectFailure({"resolve", "opaque.exr", "opaque.exr", "-o", "out.exr"}, 4);
+  // Another camera: between planes, and beside a picture that states its own.
+  make("moved.exr", {"--camera", "eye=0,0,0;look=0,0.1,-1;fov=50"});
+  const Ended shot = runProgram({"gbuffer", "glass.glb", "-o", "shot.exr", "--size", "64x64"}, options);
+  EXPECT_EQ(shot.code, 0) << shot.err;
+  GlbOptions wide;
+  wide.yfov = 1.2;
+  writeGlb(folder + "/wide.glb", {Quad{{-1, -1, -3}, {2, 0, 0}, {0, 2, 0}, unlit(1, 0, 0, .5f)}}, wide);
+  EXPECT_EQ(runProgram({"accumulate", "opaque.exr", "wide.glb", "-o", "wide.exr"}, options).code, 0);
+  before = filesIn(folder);
+  const std::string two = expectFailure({"resolve", "opaque.exr", "a.exr", "moved.exr", "-o", "out.exr"}, 4);
+  EXPECT_NE(two.find("camera"), std::string::npos) << two;
+  EXPECT_NE(two.find("a.exr"), std::string::npos) << two;
+  EXPECT_NE(two.find("moved.exr"), std::string::npos) << two;
+  const std::string other = expectFailure({"resolve", "shot.exr", "wide.exr", "-o", "out.exr"}, 4);
+  EXPECT_NE(other.find("shot.exr"), std::string::npos) << other;
+  EXPECT_NE(other.find("wide.exr"), std::string::npos) << other;
+  // The same camera from glTF and from an attribute, and one that a flag put in its place when the planes were made.
+  EXPECT_EQ(runProgram({"resolve", "shot.exr", "a.exr", "-o", "same.exr"}, options).code, 0);
+  EXPECT_EQ(runProgram({"resolve", "shot.exr", "moved.exr", "-o", "given.exr"}, options).code, 0);
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+#include "composite/cli/help_groups.h"
+
+namespace pellucid::cli {
+namespace {
+
+struct Example {
+  const char *verb, *line;
+};
+constexpr Example kExamples[] = {
+    {"composite", "pellucid composite shot.exr bottles.glb -o out.exr --environment sky.exr --measure"},
+    {"accumulate", "pellucid accumulate shot.exr bottles.glb -o planes.exr"},
+    {"resolve", "pellucid resolve shot.exr planes.exr more-planes.exr -o out.exr"},
+    {"occlusion", "pellucid occlusion shot.exr foliage.exr -o darkened.exr --radius 0.5"},
+    {"inspect", "pellucid inspect shot.exr"},
+    {"gbuffer", "pellucid gbuffer scene.glb -o shot.exr --size 1920x1080 --samples 64"},
+    {"compare", "pellucid compare expected.exr found.exr --fail 0.004 --html report.html"},
+    {"flatten", "pellucid flatten smoke.exr sparks.exr -o flat.exr"},
+    {"fragments", "pellucid fragments shot.exr bottles.glb -o deep.exr"},
+    {"study", "pellucid study shot.exr bottles.glb -o report --methods over,weighted,mlab:4 --aa 1,8"},
+    {"help", "pellucid help methods"},
+};
+
+}  // namespace
+
+std::string exampleOf(const std::string& verb) {
+  for (const Example& example : kExamples)
+    if (verb == example.verb) return example.line;
+  return "";
+}
+
+}  // namespace pellucid::cli

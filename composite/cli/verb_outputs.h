@@ -1,0 +1,10 @@
+// What every verb writes, checked before it starts.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace pellucid::cli {
+
+// Has each verb of the program end with checkOutputs' error as soon as its flags are read, before it opens a file.
+void checkOutputsFirst(CLI::App& app);
+
+}  // namespace pellucid::cli
