@@ -194,6 +194,20 @@ void Renderer::describeSurfaces() {
   }
 }
 
+namespace {
+
+void setDrawingState(const Window& superTile) {
+  glViewport(0, 0, superTile.width(), superTile.height());
+  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  // Whatever an earlier pass that threw has left.
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDisable(GL_DEPTH_TEST);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);  // as placed: the loader turns the windings of instances that mirror
+}
+
+}  // namespace
+
 void Renderer::prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
   settings_ = settings;
   geometryBytes_ = geometryBytes;
@@ -240,13 +254,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   if (features_.shadows) uploadShadows();
   uploadFrame();
 
-  glViewport(0, 0, superTile.width(), superTile.height());
-  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-  // Whatever an earlier pass that threw has left.
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glDisable(GL_DEPTH_TEST);
-  glCullFace(GL_BACK);
-  glFrontFace(GL_CCW);  // as placed: the loader turns the windings of instances that mirror
+  setDrawingState(superTile);
   glBindTextureUnit(5, opaqueZ_.name());
   glBindSampler(5, 0);
   glBindSampler(6, 0);

@@ -11,6 +11,31 @@
 
 namespace pellucid {
 
+namespace {
+
+template <class Values>
+void fill(const gl::Buffer& buffer, const Values& values) {
+  glNamedBufferData(buffer.name(), static_cast<GLsizeiptr>(values.size() * sizeof(values[0])), values.data(),
+                    GL_STATIC_DRAW);
+}
+
+gl::FrameBlock frameOf(const shading::WeightSettings& weight, int width) {
+  gl::FrameBlock frame;
+  frame.weightNear = weight.rangeNear;
+  frame.weightFar = weight.rangeFar;
+  frame.weightExponent = weight.exponent;
+  frame.bandWidth = width;
+  return frame;
+}
+
+bool anyScatters(const FragmentLists& lists) {
+  return lists.disperses() || std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
+           return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
+         });
+}
+
+}  // namespace
+
 OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading::WeightSettings& weight,
                           int normalisation) {
   const int width = lists.window.width(), height = lists.window.height();
@@ -26,15 +51,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   std::uint32_t deepest = 0;
   for (std::size_t i = 0; i + 1 < offsets.size(); ++i) deepest = std::max(deepest, offsets[i + 1] - offsets[i]);
 
-  auto fill = [](const gl::Buffer& buffer, const auto& values) {
-    glNamedBufferData(buffer.name(), static_cast<GLsizeiptr>(values.size() * sizeof(values[0])), values.data(),
-                      GL_STATIC_DRAW);
-  };
-  gl::FrameBlock frame;
-  frame.weightNear = weight.rangeNear;
-  frame.weightFar = weight.rangeFar;
-  frame.weightExponent = weight.exponent;
-  frame.bandWidth = width;
+  const gl::FrameBlock frame = frameOf(weight, width);
   const gl::Buffer fragmentBuffer = gl::Buffer::make(), offsetBuffer = gl::Buffer::make(),
                    frameBuffer = gl::Buffer::make();
   fill(fragmentBuffer, lists.fragments);
@@ -42,10 +59,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glNamedBufferData(frameBuffer.name(), sizeof(frame), &frame, GL_STATIC_DRAW);
   gl::checkGl("uploading fragments to replay");
 
-  const bool scatters =
-      lists.disperses() || std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
-        return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
-      });
+  const bool scatters = anyScatters(lists);
   std::vector<std::string> defines{"WEIGHT " + std::to_string(weight.kind),
                                    "NORMALISATION " + std::to_string(normalisation)};
   if (scatters) {

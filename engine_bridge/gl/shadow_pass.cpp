@@ -42,6 +42,9 @@ class MapMaker {
   shading::ShadowFace face(const LightView& view, int edge, const shading::ShadowGrid& grid, int channels);
   void transparentFace(const LightView& view, const LightViews& metric, std::uint32_t seed);
   void opaqueFace(const LightView& view, const LightViews& metric);
+  LightViews opaqueViewsOf(const Light& light, const glm::dmat4& own, const Bounds& casters, double faces) const;
+  void transparentBias(const LightViews& views, const LightViews& metric, shading::ShadowLight& block) const;
+  void opaqueBias(const LightViews& views, shading::ShadowLight& block) const;
   glm::vec4* grow(std::size_t texels) {
     maps.texels.resize(maps.texels.size() + texels);
     return maps.texels.data() + maps.texels.size() - texels;
@@ -104,6 +107,51 @@ void MapMaker::opaqueFace(const LightView& view, const LightViews& metric) {
   }
 }
 
+// The views of the opaque maps of a light, which reach as far as what is transparent or shown; none without opaque
+// maps.
+//   own    the light's space from the world
+//   faces  how many times smaller the edge of a face is than that of a map
+LightViews MapMaker::opaqueViewsOf(const Light& light, const glm::dmat4& own, const Bounds& casters,
+                                   double faces) const {
+  if (settings_.opaqueSize <= 0 || !drawer_.hasOpaque()) return {};
+  double opaqueFarthest = 0.0, pictureFarthest = 0.0;
+  Bounds opaque = casterBounds(scene_, Casters::opaque, own, opaqueFarthest), needed = opaque;
+  if (gbuffer_) {
+    const Bounds picture = pictureBounds(*gbuffer_, camera_, own, pictureFarthest);
+    if (opaque.empty()) {
+      opaque = picture;
+      opaqueFarthest = pictureFarthest;
+    }
+    needed = picture;
+    if (!casters.empty()) {
+      needed.add(casters.low);
+      needed.add(casters.high);
+    }
+  }
+  return lightViews(light, opaque, opaqueFarthest, needed, faces * kMargin / settings_.opaqueSize);
+}
+
+void MapMaker::transparentBias(const LightViews& views, const LightViews& metric, shading::ShadowLight& block) const {
+  const LightView& view = views.faces[0];
+  const double edge = views.faces.size() > 1 ? settings_.size / 2 : settings_.size;
+  const glm::vec2 bias =
+      shading::shadowBias(metric.radial, std::min(view.camera.focal.x, view.camera.focal.y), edge, metric.scale);
+  block.bias.z = bias.x;
+  block.bias.w = bias.y;
+}
+
+// `views` with the unit of depth of the transparent maps.
+void MapMaker::opaqueBias(const LightViews& views, shading::ShadowLight& block) const {
+  const LightView& view = views.faces[0];
+  const double edge = views.faces.size() > 1 ? settings_.opaqueSize / 2 : settings_.opaqueSize;
+  const double texel = 2.0 / (std::min(view.camera.focal.x, view.camera.focal.y) * edge);
+  // A texel of a cone or cube widens with the distance.
+  if (views.radial)
+    block.bias.y = static_cast<float>(kOpaqueBias * texel);
+  else
+    block.bias.x = static_cast<float>(kOpaqueBias * texel * views.scale);
+}
+
 void MapMaker::light(const Light& light, std::uint32_t index) {
   shading::ShadowLight block{};
   block.lookup = {settings_.form == Form::variance    ? shading::PLD_SHADOW_SLAB
@@ -116,27 +164,11 @@ void MapMaker::light(const Light& light, std::uint32_t index) {
     return;
   }
   const glm::dmat4 own = lightFromWorld(light);
-  double farthest = 0.0, opaqueFarthest = 0.0, pictureFarthest = 0.0;
+  double farthest = 0.0;
   const Bounds casters = casterBounds(scene_, Casters::transparent, own, farthest);
   const double faces = light.kind == LightKind::directional ? 1.0 : 2.0;  // faces of cubes have half the edge
   const LightViews views = lightViews(light, casters, farthest, casters, faces * kMargin / settings_.size);
-  LightViews opaqueViews;
-  if (settings_.opaqueSize > 0 && drawer_.hasOpaque()) {
-    Bounds opaque = casterBounds(scene_, Casters::opaque, own, opaqueFarthest), needed = opaque;
-    if (gbuffer_) {
-      const Bounds picture = pictureBounds(*gbuffer_, camera_, own, pictureFarthest);
-      if (opaque.empty()) {
-        opaque = picture;
-        opaqueFarthest = pictureFarthest;
-      }
-      needed = picture;
-      if (!casters.empty()) {
-        needed.add(casters.low);
-        needed.add(casters.high);
-      }
-    }
-    opaqueViews = lightViews(light, opaque, opaqueFarthest, needed, faces * kMargin / settings_.opaqueSize);
-  }
+  LightViews opaqueViews = opaqueViewsOf(light, own, casters, faces);
   // One unit of depth for both kinds.
   const LightViews& metric = views.faces.empty() ? opaqueViews : views;
   const glm::dmat4 ownFromView = own * glm::inverse(camera_.viewFromWorld);
@@ -151,29 +183,13 @@ void MapMaker::light(const Light& light, std::uint32_t index) {
     transparentFace(view, views,
                     shading::mapSeedOf(settings_.seed, index, static_cast<std::uint32_t>(maps.faces.size())));
   block.faces[1] = static_cast<int>(maps.faces.size()) - block.faces[0];
-  if (block.faces[1] > 0 && settings_.form != Form::published) {
-    const LightView& view = views.faces[0];
-    const double edge = views.faces.size() > 1 ? settings_.size / 2 : settings_.size;
-    const glm::vec2 bias =
-        shading::shadowBias(metric.radial, std::min(view.camera.focal.x, view.camera.focal.y), edge, metric.scale);
-    block.bias.z = bias.x;
-    block.bias.w = bias.y;
-  }
+  if (block.faces[1] > 0 && settings_.form != Form::published) transparentBias(views, metric, block);
   block.faces[2] = static_cast<int>(maps.faces.size());
   opaqueViews.scale = metric.scale;
   opaqueViews.offset = metric.offset;
   for (const LightView& view : opaqueViews.faces) opaqueFace(view, opaqueViews);
   block.faces[3] = static_cast<int>(maps.faces.size()) - block.faces[2];
-  if (block.faces[3] > 0) {
-    const LightView& view = opaqueViews.faces[0];
-    const double edge = opaqueViews.faces.size() > 1 ? settings_.opaqueSize / 2 : settings_.opaqueSize;
-    const double texel = 2.0 / (std::min(view.camera.focal.x, view.camera.focal.y) * edge);
-    // A texel of a cone or cube widens with the distance.
-    if (metric.radial)
-      block.bias.y = static_cast<float>(kOpaqueBias * texel);
-    else
-      block.bias.x = static_cast<float>(kOpaqueBias * texel * metric.scale);
-  }
+  if (block.faces[3] > 0) opaqueBias(opaqueViews, block);
   maps.lights.push_back(block);
 }
 

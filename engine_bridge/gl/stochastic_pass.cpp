@@ -194,21 +194,42 @@ const StochasticPassStatistics& StochasticPass::statistics() const {
   return impl_->statistics;
 }
 
+namespace {
+
+// Planes in which nothing was drawn.
+StochasticPlanes emptySamples(const Window& data) {
+  const Image<glm::vec3> black(data.width(), data.height(), glm::vec3(0.0f)),
+      white(data.width(), data.height(), glm::vec3(1.0f));
+  return {data,
+          black,
+          black,
+          black,
+          white,
+          white,
+          Image<glm::vec4>(data.width(), data.height(), glm::vec4(0, 0, 0, kInfinity)),
+          Image<float>(data.width(), data.height(), kInfinity)};
+}
+
+// How many rows of samples a storage block takes at once.
+//   row  bytes of one. Throws ResourceError when the device cannot hold it.
+int rowsAtOnce(std::size_t row) {
+  GLint64 limit = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit);
+  const std::size_t most = static_cast<std::size_t>(std::max<GLint64>(limit, 0));
+  if (row > most)
+    throw ResourceError(
+        "GL: a row of samples is larger than the device's storage blocks; more --aa passes make it smaller");
+  return static_cast<int>(std::max<std::size_t>(std::min(kSampleBytes, most) / row, 1));
+}
+
+}  // namespace
+
 StochasticPlanes StochasticPass::sample(const PassSettings& settings, const StochasticPassSettings& samples) {
   Impl& self = *impl_;
   self.statistics = {};
   self.statistics.passes = samples.winnersOnly ? 3 : 2;
   const Window& data = self.gbuffer.data;
-  const Image<glm::vec3> black(data.width(), data.height(), glm::vec3(0.0f)),
-      white(data.width(), data.height(), glm::vec3(1.0f));
-  StochasticPlanes planes{data,
-                          black,
-                          black,
-                          black,
-                          white,
-                          white,
-                          Image<glm::vec4>(data.width(), data.height(), glm::vec4(0, 0, 0, kInfinity)),
-                          Image<float>(data.width(), data.height(), kInfinity)};
+  StochasticPlanes planes = emptySamples(data);
   PassSettings plain = settings;
   plain.scatter.refract = shading::PLD_REFRACT_OFF;
   plain.scatter.k0 = 0.0f;
@@ -233,16 +254,10 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
     if (samples.stratified) glBindTextureUnit(kRankUnit, self.ranks.name());
     glBindSampler(kRankUnit, 0);
 
-    GLint64 limit = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit);
     const int channels = self.renderer.grey() ? 1 : 3;
     const std::size_t row =
         static_cast<std::size_t>(part.width()) * static_cast<std::size_t>(channels) * count * sizeof(std::uint32_t);
-    const std::size_t room = std::min(kSampleBytes, static_cast<std::size_t>(std::max<GLint64>(limit, 0)));
-    if (row > static_cast<std::size_t>(std::max<GLint64>(limit, 0)))
-      throw ResourceError(
-          "GL: a row of samples is larger than the device's storage blocks; more --aa passes make it smaller");
-    const int rows = static_cast<int>(std::max<std::size_t>(room / row, 1));
+    const int rows = rowsAtOnce(row);
     Image<glm::vec3> empty(part.width(), part.height(), glm::vec3(1.0f));
     for (int top = 0; top < part.height(); top += rows) {
       const Window band{0, top, part.width(), std::min(top + rows, part.height())};

@@ -151,18 +151,6 @@ TEST(Planted, CirclesAreFound) {
   EXPECT_EQ(circles({{"rooms/a.h", include("b.h")}, {"rooms/b.h", include("a.h")}}), 0u);
 }
 
-TEST(Planted, LongFunctionsAreFound) {
-  const auto longer = [](const std::string& text) { return longFunctions({"room/a.cpp", text}, 4).size(); };
-  EXPECT_EQ(longer("void f() {\n  a;\n  b;\n}\n"), 0u);
-  EXPECT_EQ(longer("void f() {\n  a;\n  b;\n  c;\n}\n"), 1u);
-  EXPECT_EQ(longer("bool A::f(int x,\n          int y) const {\n  a;\n  b;\n  c;\n}\n"), 1u);
-  EXPECT_EQ(longer("class A {\n  void f() const {\n    a;\n    b;\n    c;\n  }\n};\n"), 1u);
-  EXPECT_EQ(longer("void f() {\n  for (a)\n    if (b) {\n    }\n}\n"), 1u);
-  EXPECT_EQ(longer("void f() {\n  if (a) {\n  }\n}\nint a;\nint b;\nint c;\n  }\n"), 0u);
-  EXPECT_EQ(longer("namespace a {\nint b;\nint c;\nint d;\n}  // namespace a\n"), 0u);
-  EXPECT_EQ(longer("const int x[] = {\n  1,\n  2,\n  3,\n};\n"), 0u);
-}
-
 TEST(Planted, AMissingOrEmptyReadmeIsFound) {
   const std::filesystem::path top = std::filesystem::path(PELLUCID_BINARY_DIR) / "test-files" / "planted-readme";
   std::filesystem::remove_all(top);

@@ -237,38 +237,6 @@ Violations circlesIn(const std::string& folder, const std::vector<SourceFile>& f
   return found;
 }
 
-Violations longFunctions(const SourceFile& file, int most) {
-  static const std::regex type(R"(^(?:struct|class|union) )"), other(R"(^(?:[#}/]|namespace|extern|enum|using))");
-  const std::vector<std::string> lines = linesOf(file.text);
-  Violations found;
-  bool inType = false;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::size_t indent = lines[i].find_first_not_of(' ');
-    if (indent == 0 && lines[i][0] == '}') inType = false;
-    if (indent != (inType ? 2 : 0)) continue;
-    const std::string text = lines[i].substr(indent);
-    if (std::regex_search(text, other)) continue;
-    // A signature or a type may take several lines; what ends in a semicolon is none.
-    std::size_t opening = i;
-    while (opening < lines.size() && !lines[opening].ends_with('{') && !lines[opening].ends_with(';')) ++opening;
-    if (opening == lines.size() || !lines[opening].ends_with('{')) continue;
-    if (std::regex_search(text, type) && indent == 0) {
-      inType = true;
-      i = opening;
-      continue;
-    }
-    const std::string closing = std::string(indent, ' ') + "}";
-    std::size_t end = opening + 1;
-    while (end < lines.size() && lines[end].rfind(closing, 0) != 0) ++end;
-    const int length = static_cast<int>(end - opening) + 1;
-    if (text.find('(') != std::string::npos && length > most)
-      found.push_back(at(file, static_cast<int>(i) + 1) + "a function of " + std::to_string(length) +
-                      " lines; expected at most " + std::to_string(most));
-    i = end;
-  }
-  return found;
-}
-
 Violations roomsWithoutReadme(const std::string& top) {
   Violations found;
   const auto isEmpty = [](const std::filesystem::path& folder) {

@@ -28,9 +28,6 @@ Violations definedTwice(const std::vector<SourceFile>& files);
 // and, where a class of its header has members that are defined in another part's source, that part too: what includes
 // the header reaches them.
 Violations circlesIn(const std::string& folder, const std::vector<SourceFile>& files);
-// Functions of more lines than `most`, from the line of their opening brace to that of their closing one, by the layout
-// that clang-format gives them.
-Violations longFunctions(const SourceFile& file, int most);
 // Rooms of the tree below `top` that have no README.md.
 Violations roomsWithoutReadme(const std::string& top);
 

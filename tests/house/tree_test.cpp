@@ -62,13 +62,6 @@ TEST(House, TheCLibraryHasNoCircles) {
   EXPECT_TRUE(found.empty()) << told(found);
 }
 
-TEST(House, FunctionsOfTheCLibraryAreShort) {
-  constexpr int most = 60;
-  const Violations found =
-      overTree("engine_bridge/c/", [](const SourceFile& file) { return longFunctions(file, most); });
-  EXPECT_TRUE(found.empty()) << told(found);
-}
-
 TEST(House, EveryRoomHasAReadme) {
   const Violations found = roomsWithoutReadme(PELLUCID_SOURCE_DIR);
   EXPECT_TRUE(found.empty()) << told(found);

@@ -48,8 +48,7 @@ TEST(WeightAuto, NoListedWeightIsMoreThanTwoPercentBetter) {
       return sum / (3.0 * static_cast<double>(veil.light.size()));
     };
     double best = 1e9;
-    for (int kind = 0; depthWeightOf(kind); ++kind)
-      best = std::min(best, errorOf(weightOf(kind)));
+    for (int kind = 0; depthWeightOf(kind); ++kind) best = std::min(best, errorOf(weightOf(kind)));
     const double fitted = errorOf(fit.weight);
     printf("[ figure ] set %c: auto %s, mean error %.5f on all pixels, best listed weight %.5f\n", set,
            weightText(fit.weight).c_str(), fitted, best);
