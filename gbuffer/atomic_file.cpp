@@ -14,6 +14,7 @@
 #include <ctime>
 
 #include "gbuffer/errors.h"
+#include "gbuffer/writable.h"
 
 namespace pellucid {
 

@@ -26,10 +26,6 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-// Throws the ResourceError that an AtomicFile of this target would end in, as far as that can be known without writing:
-// its folder is missing or takes no files, or something other than a file that may be replaced stands there.
-void expectWritable(const std::string& target);
-
 // SIGINT and SIGTERM remove every temporary file in being, then end the process with 130 or 143 (unless they were
 // ignored at the start, as under nohup). SIGXFSZ is ignored, so that a file size limit is an error like a full disk.
 void cleanUpOnSignals();

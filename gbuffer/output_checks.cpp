@@ -9,8 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "gbuffer/atomic_file.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/writable.h"
 
 namespace pellucid {
 namespace {

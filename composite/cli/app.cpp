@@ -3,6 +3,7 @@
 
 #include "composite/cli/help_groups.h"
 #include "composite/cli/messages.h"
+#include "composite/cli/program.h"
 #include "composite/cli/suggest.h"
 #include "composite/cli/verb_outputs.h"
 #include "composite/cli/verbs.h"

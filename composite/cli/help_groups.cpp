@@ -96,6 +96,7 @@ const std::vector<HelpRow> kRows{
     {"--budget", kRunning, "BYTES"},
     {"--threads", kRunning, "N"},
     {"--device", kRunning, "N"},
+    {"--explain", kRunning, ""},
     {"--stats", kRunning, ""},
     {"--json", kRunning, ""},
     {"--version", kRunning, ""},

@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "composite/cli/help_groups.h"
-#include "composite/cli/verbs.h"
+#include "composite/cli/program.h"
 
 namespace pellucid::cli {
 namespace {

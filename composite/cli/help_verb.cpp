@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "composite/cli/help_text.h"
+#include "composite/cli/program.h"
 #include "composite/cli/suggest.h"
-#include "composite/cli/verbs.h"
 #include "composite/methods/method.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"

@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <regex>
 
+#include "composite/cli/occlusion_layer.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/occluders.h"
 #include "composite/occlusion.h"
 #include "composite/pipeline/shot.h"
-#include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -22,85 +21,6 @@ struct OcclusionFlags {
   ReadFlags read;
   RunFlags run;
 };
-
-constexpr const char* kAttribute = "pellucid:occlusion";
-
-// The light of the layer that came from all around, premultiplied as its beauty is.
-Image<glm::vec3> indirectLight(const OpaqueFile& layer, const std::string& wanted) {
-  const Image<glm::vec4>& beauty = layer.gbuffer.beauty;
-  Image<glm::vec3> light(beauty.width(), beauty.height(), glm::vec3(0.0f));
-  if (wanted == "beauty") {
-    for (std::size_t i = 0; i < light.size(); ++i) light[i] = glm::vec3(beauty[i]);
-    return light;
-  }
-  const std::vector<NamedChannel> channels = nameChannels(layer.document);
-  std::vector<std::string> found;
-  for (const NamedChannel& channel : channels) {
-    const std::string name = channel.layers.empty() ? "" : channel.layers.back();
-    const bool matches = wanted.empty() ? name == "indirect" || name == "ambient" : channel.layerName == wanted;
-    if (matches && std::find(found.begin(), found.end(), channel.layerName) == found.end())
-      found.push_back(channel.layerName);
-  }
-  if (found.size() != 1)
-    throw MeaningError(
-        fmt::format("{}: {} of indirect light: found {}, expected {}", layer.document.path,
-                    found.empty() ? "no layer" : "more than one layer",
-                    found.empty() ? listNames(channels, 12) : fmt::format("{} and {}", found[0], found[1]),
-                    wanted.empty() ? "indirect.R, .G and .B, or --indirect NAME (beauty takes all light for indirect)"
-                                   : wanted + ".R, .G and .B"));
-  bool seen[3] = {};
-  for (const NamedChannel& channel : channels) {
-    if (channel.layerName != found[0]) continue;
-    const std::string& suffix = channel.suffix;
-    const int c = suffix == "r" || suffix == "red"     ? 0
-                  : suffix == "g" || suffix == "green" ? 1
-                  : suffix == "b" || suffix == "blue"  ? 2
-                                                       : -1;
-    if (c < 0) continue;
-    const ExrPart& part = layer.document.parts[static_cast<std::size_t>(channel.part)];
-    if (part.data != layer.gbuffer.data)
-      throw MeaningError(fmt::format("{}: {}: found another data window than the beauty's, expected the same",
-                                     layer.document.path, channel.fullName));
-    for (std::size_t i = 0; i < light.size(); ++i) light[i][c] = channel.channel->at(i);
-    seen[c] = true;
-  }
-  if (!seen[0] || !seen[1] || !seen[2])
-    throw MeaningError(
-        fmt::format("{}: {}: found a layer without R, G and B, expected all three", layer.document.path, found[0]));
-  return light;
-}
-
-// What is said of any picture names its flags; those of the layer are called otherwise.
-std::string saidOfLayer(const std::string& text) {
-  static const std::regex beauty("--beauty(?![-\\w])"), depth("--depth(?![-\\w])");
-  return std::regex_replace(std::regex_replace(text, beauty, "--layer-beauty"), depth, "--layer-depth");
-}
-
-OpaqueFile readLayer(const OcclusionFlags& flags) {
-  ReadOptions options = flags.read.options();
-  options.beautyLayer = flags.layerBeauty;
-  options.depthChannel = flags.layerDepth;
-  const bool converts = options.depthKind == "ray" || options.depthKind == "device";
-  OpaqueFile layer = [&] {
-    if (!converts) return readOpaque(flags.layer, options);
-    // Through the camera of the layer's own file, or of the flag.
-    ReadOptions windows = options;
-    windows.depthKind = "planar";
-    OpaqueFile first = readOpaque(flags.layer, windows);
-    const Camera camera = chooseCamera(cameraChoice(flags.camera), first.gbuffer, Scene{}, flags.layer);
-    return interpretOpaque(std::move(first.document), options, &camera);
-  }();
-  if (!layer.gbuffer.hasAlpha)
-    throw MeaningError(fmt::format("{}: no coverage: found a beauty without A, expected R, G, B and A", flags.layer));
-  const ExrPart& part = layer.document.parts[static_cast<std::size_t>(layer.choice.beautyPart)];
-  if (part.text(kAttribute))
-    throw MeaningError(fmt::format("{}: found {} '{}', expected a layer whose rims are not occluded yet", flags.layer,
-                                   kAttribute, *part.text(kAttribute)));
-  if (part.find("occlusion"))
-    throw MeaningError(
-        fmt::format("{}: found a channel 'occlusion', expected that name free for the result", flags.layer));
-  return layer;
-}
 
 // Depth and occlusion beside the rims: the file's own, and from depth where it has none.
 OccluderPlanes occludersBeside(const OcclusionFlags& flags, const GBuffer& gbuffer, const FoliagePlanes& layer,
@@ -128,27 +48,28 @@ OccluderPlanes occludersBeside(const OcclusionFlags& flags, const GBuffer& gbuff
   return occluders;
 }
 
+nlohmann::json reportOf(const InferredOcclusion& inferred, const FoliagePlanes& foliage) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < inferred.occlusion.size(); ++i)
+    if (shading::isRim(foliage.coverage[i])) sum += static_cast<double>(inferred.occlusion[i]);
+  return {{"rims", inferred.rims},
+          {"withoutDepth", inferred.withoutDepth},
+          {"withoutSources", inferred.withoutSources},
+          {"meanOcclusion", inferred.rims ? sum / static_cast<double>(inferred.rims) : 1.0}};
+}
+
 void occlusionVerb(const OcclusionFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  OpaqueFile opaque = stages.time("read picture", [&] {
-    ReadOptions options = flags.read.options();
-    const bool converts = options.depthKind == "ray" || options.depthKind == "device";
-    if (!converts) return readOpaque(flags.opaque, options);
-    options.depthKind = "planar";
-    OpaqueFile first = readOpaque(flags.opaque, options);
-    const Camera camera = chooseCamera(cameraChoice(flags.camera), first.gbuffer, Scene{}, flags.opaque);
-    return interpretOpaque(std::move(first.document), flags.read.options(), &camera);
-  });
+  const OpaqueFile opaque =
+      stages.time("read picture", [&] { return readThroughCamera(flags.opaque, flags.read.options(), flags.camera); });
   say(opaque.notes);
-  OpaqueFile layer = stages.time("read layer", [&] {
-    try {
-      return readLayer(flags);
-    } catch (const Error& error) {
-      throw Error(error.exitCode(), saidOfLayer(error.what()));
-    }
+  const OpaqueFile layer = stages.time("read layer", [&] {
+    ReadOptions options = flags.read.options();
+    options.beautyLayer = flags.layerBeauty;
+    options.depthChannel = flags.layerDepth;
+    return readFoliageLayer(flags.layer, options, flags.camera);
   });
-  for (std::string& note : layer.notes) note = saidOfLayer(note);
   say(layer.notes);
   if (layer.gbuffer.display != opaque.gbuffer.display)
     throw MeaningError(fmt::format("{}: found a display window of {}x{} at ({}, {}), expected {}x{} at ({}, {}) of {}",
@@ -157,12 +78,7 @@ void occlusionVerb(const OcclusionFlags& flags) {
                                    opaque.gbuffer.display.height(), opaque.gbuffer.display.x0,
                                    opaque.gbuffer.display.y0, flags.opaque));
   const Image<glm::vec3> indirect = indirectLight(layer, flags.indirect);
-  FoliagePlanes foliage;
-  foliage.data = layer.gbuffer.data;
-  foliage.viewZ = layer.gbuffer.viewZ;
-  foliage.coverage = Image<float>(foliage.viewZ.width(), foliage.viewZ.height());
-  for (std::size_t i = 0; i < foliage.coverage.size(); ++i) foliage.coverage[i] = layer.gbuffer.beauty[i].a;
-
+  const FoliagePlanes foliage = foliageOf(layer.gbuffer);
   const int form = flags.inference == "published" ? shading::PLD_OCCLUSION_PUBLISHED : shading::PLD_OCCLUSION_RELATIVE;
   const OccluderPlanes occluders =
       stages.time("occluders", [&] { return occludersBeside(flags, opaque.gbuffer, foliage, form); });
@@ -178,19 +94,13 @@ void occlusionVerb(const OcclusionFlags& flags) {
               [&] { applyOcclusion(inferred.occlusion, indirect, static_cast<float>(flags.direct), beauty, touched); });
   const std::vector<ExtraLayer> added{{"", {{"occlusion", inferred.occlusion}}}};
   say(stages.time("write", [&] {
-    return writePicture(flags.output, layer, beauty, touched, added, {{kAttribute, flags.inference}});
+    return writePicture(flags.output, layer, beauty, touched, added, {{kOcclusionAttribute, flags.inference}});
   }));
   std::size_t changed = 0;
-  double sum = 0.0;
   for (std::size_t i = 0; i < touched.size(); ++i) changed += touched[i];
-  for (std::size_t i = 0; i < inferred.occlusion.size(); ++i)
-    if (shading::isRim(foliage.coverage[i])) sum += static_cast<double>(inferred.occlusion[i]);
-  nlohmann::json report{{"output", flags.output},
-                        {"rims", inferred.rims},
-                        {"changed", changed},
-                        {"withoutDepth", inferred.withoutDepth},
-                        {"withoutSources", inferred.withoutSources},
-                        {"meanOcclusion", inferred.rims ? sum / static_cast<double>(inferred.rims) : 1.0}};
+  nlohmann::json report = reportOf(inferred, foliage);
+  report["output"] = flags.output;
+  report["changed"] = changed;
   if (!flags.run.json) fmt::print("{} rim pixels, {} darkened\n", inferred.rims, changed);
   reportRun(flags.run, stages, {}, "CPU", report);
 }

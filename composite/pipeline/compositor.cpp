@@ -81,11 +81,6 @@ Compositor::Run Compositor::prepare(const Request& request) {
   return run;
 }
 
-void Compositor::noteNothing(bool shows) {
-  if (!shows && !nothingNoted_) noteThatNothingShows(*shot_, journal_);
-  nothingNoted_ = nothingNoted_ || !shows;
-}
-
 Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal,
                        RunCounts& counts) {
   const PaintContext context{plan, *shot_, run.lighting->picture, *run.sources, device_, journal, counts};
@@ -112,7 +107,7 @@ Result Compositor::run(const Request& request) {
   result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
   const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
   for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
-  noteNothing(anyTouched(result.picture.touched));
+  if (!anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);
   if (request.measure) {
     Journal truth = journal_.beside();
     RunCounts unused;
@@ -159,7 +154,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
     shows = shows || anyLayers(made.planes);
     each(std::move(made));
   }
-  noteNothing(shows);
+  if (!shows) noteThatNothingShows(*shot_, journal_);
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   return counts;
 }
@@ -173,7 +168,7 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
       sink(lists);
     });
   });
-  noteNothing(counts.fragments > 0);
+  if (counts.fragments == 0) noteThatNothingShows(*shot_, journal_);
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   return counts;
 }

@@ -59,7 +59,6 @@ class Compositor {
   const Lighting& lightOf(const Request& request);
   TransparentPass* triangles();
   Run prepare(const Request& request);
-  void noteNothing(bool shows);  // once, where nothing shows
   Veil paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal, RunCounts& counts);
 
   Journal journal_;
@@ -70,7 +69,6 @@ class Compositor {
   // The light of the last request; requests that differ in nothing that lights share it.
   std::unique_ptr<Lighting> lighting_;
   Request lit_;
-  bool nothingNoted_ = false;
 };
 
 }  // namespace pellucid

@@ -8,7 +8,7 @@
 #include <regex>
 #include <set>
 
-#include "composite/cli/verbs.h"
+#include "composite/cli/program.h"
 
 namespace pellucid {
 namespace {
@@ -45,7 +45,8 @@ const Printers kPrinters[] = {
     {"engine_bridge/scene/overrides.", {"composite", "accumulate", "fragments", "study", "gbuffer"}},
     {"engine_bridge/scene/gltf.", {"composite", "accumulate", "fragments", "study", "gbuffer"}},
     {"engine_bridge/scene/unseen.", kDrawers},
-    {"composite/cli/shot.", kDrawers},
+    {"composite/pipeline/shot.", kDrawers},
+    {"composite/pipeline/resolve_planes.", {"resolve"}},
     {"composite/compare/", {"compare"}},
     {"composite/deep/flatten.", {"flatten"}},
 };

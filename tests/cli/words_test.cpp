@@ -7,8 +7,8 @@
 
 #include "composite/cli/help_groups.h"
 #include "composite/cli/help_text.h"
+#include "composite/cli/program.h"
 #include "composite/cli/suggest.h"
-#include "composite/cli/verbs.h"
 #include "tests/support/program.h"
 
 namespace pellucid {
