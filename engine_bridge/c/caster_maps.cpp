@@ -218,6 +218,7 @@ void CasterMaps::filter(int face) const {
 
 void CasterMaps::end() {
   const GlFunctions& gl = device_.gl;
+  device_.markDrawn();
   if (depthAttachment_) {
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, drawnFrame_);
     gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, depthAttachment_, GL_TEXTURE_2D, 0, 0);

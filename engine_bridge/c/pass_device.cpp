@@ -65,9 +65,11 @@ void Device::create() {
     gl.ObjectLabel(GL_VERTEX_ARRAY, vertexArray_, -1, label_);
   }
   if (info.flags & PLD_FLAG_TIMERS) timers.create(gl);
+  fences_.create(gl);
 }
 
 void Device::destroy() {
+  fences_.destroy(gl);
   timers.destroy(gl);
   if (vertexArray_) gl.DeleteVertexArrays(1, &vertexArray_);
   if (sampler_) gl.DeleteSamplers(1, &sampler_);
@@ -122,8 +124,9 @@ void Device::use(const Program& program) const {
   gl.BindVertexArray(vertexArray_);
 }
 
-void Device::drawEverywhere() const {
+void Device::drawEverywhere() {
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  fences_.mark(gl);
 }
 
 GLuint Device::makeTexture(GLenum format, int width, int height, int bits, uint64_t& bytes) const {

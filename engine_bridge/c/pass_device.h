@@ -1,6 +1,7 @@
 // The host's GL context as one pass uses it: GL functions, words to the host, saved state, and what every draw of the
 // library's own needs. All parts of a pass work over one Device.
 #pragma once
+#include "engine_bridge/c/kept_fences.h"
 #include "engine_bridge/c/permutation.h"
 #include "engine_bridge/c/programs.h"
 #include "engine_bridge/c/saved_state.h"
@@ -49,7 +50,9 @@ class Device {
   void bind(GLuint unit, GLuint texture) const;
   void bindSampler(GLuint unit) const;  // nearest texels, none compared
   void use(const Program& program) const;
-  void drawEverywhere() const;  // over the whole viewport, with the program in use
+  // After draws of the host's, before the framebuffer changes; drawEverywhere() does it itself.
+  void markDrawn() { fences_.mark(gl); }
+  void drawEverywhere();  // over the whole viewport, with the program in use
   // Level 0 alone; adds what it takes to `bytes`. The host's unpack buffer is unbound: see Room.
   GLuint makeTexture(GLenum format, int width, int height, int bits, uint64_t& bytes) const;
   void releaseTexture(GLuint& name) const;
@@ -61,6 +64,7 @@ class Device {
 
  private:
   SavedState saved_;
+  KeptFences fences_;
   GLuint vertexArray_ = 0, sampler_ = 0;
   char label_[64] = {};  // of vertexArray_
 };

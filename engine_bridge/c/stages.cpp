@@ -200,6 +200,7 @@ pld_status Stages::open(pld_stage stage, const pld_frame& frame, int width, GLen
 
 pld_status Stages::close(bool& whole) {
   const GlFunctions& gl = device_.gl;
+  device_.markDrawn();
   if (depthAttachment_) device_.attach(frameOf(stage_), depthAttachment_, 0);
   const int pixelsATexel = stage_ == PLD_STAGE_LOW ? frame_.low_factor : 1;
   pld_status status = PLD_OK;

@@ -191,6 +191,32 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
   }
 }
 
+// A timestamp after each draw of the library's and at the end of each stage keeps llvmpipe's fences; elsewhere there is
+// none.
+TEST(BridgeSteady, DrawsKeepTheirFencesOnLlvmpipe) {
+  GlContext context;
+  const bool llvmpipe = context.description().find("llvmpipe") != std::string::npos;
+  Host host(16, 16);
+  pld_create_info info = host.info();
+  info.get_proc_address = counted;
+  info.features = PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION;
+  pld_pass* pass = host.create(info);
+  ASSERT_NE(pass, nullptr);
+  const pld_frame frame = host.frame();
+  const pld_target target = host.target();
+  calls.clear();
+  const std::vector<pld_stage> stages{PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW};
+  for (const pld_stage stage : stages) {
+    ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+    ASSERT_EQ(pld_end(pass), PLD_OK);
+  }
+  ASSERT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
+  const int draws = calls["glDrawArrays"];
+  EXPECT_GT(draws, 3);
+  EXPECT_EQ(calls["glQueryCounter"], llvmpipe ? draws + static_cast<int>(stages.size()) : 0);
+  pld_destroy(&pass);
+}
+
 // The counter sees an allocation that a call does make.
 TEST(BridgeSteady, TheCounterSeesAllocations) {
 #if !defined(__SANITIZE_ADDRESS__)
