@@ -83,8 +83,9 @@ struct ExrPartEdit {
 std::vector<std::string> writeExr(const std::string& path, const ExrDocument& document,
                                   const std::map<int, ExrPartEdit>& edits = {});
 
-// A new single-part scanline ZIP file, in which `channels` lie.
+// A new scanline ZIP part, in which `channels` lie.
 struct NewExr {
+  std::string part;  // its name; needed where there are several
   Window display, data;
   double pixelAspect = 1.0;
   std::vector<ExrChannel> channels;
@@ -92,5 +93,7 @@ struct NewExr {
   std::map<std::string, std::vector<float>> matrices;  // 16 numbers each, row major, as m44f attributes
 };
 void writeNewExr(const std::string& path, const NewExr& file);
+// Several parts of one display window, in order.
+void writeNewExr(const std::string& path, const std::vector<NewExr>& parts);
 
 }  // namespace pellucid

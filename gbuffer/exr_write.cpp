@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledInputPart.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
@@ -221,28 +222,59 @@ std::vector<std::string> writeExr(const std::string& path, const ExrDocument& do
   return notes;
 }
 
-void writeNewExr(const std::string& path, const NewExr& file) {
-  exr::Header header(boxOf(file.display), boxOf(file.data), static_cast<float>(file.pixelAspect));
-  header.compression() = exr::ZIP_COMPRESSION;
-  for (const auto& [name, text] : file.attributes) header.insert(name, exr::StringAttribute(text));
-  for (const auto& [name, numbers] : file.matrices) {
-    IMATH_NAMESPACE::M44f matrix;
-    for (int row = 0; row < 4; ++row)
-      for (int column = 0; column < 4; ++column)
-        matrix[row][column] = numbers.at(static_cast<std::size_t>(row * 4 + column));
-    header.insert(name, exr::M44fAttribute(matrix));
-  }
-  const std::size_t pixels = static_cast<std::size_t>(file.data.width()) * static_cast<std::size_t>(file.data.height());
+namespace {
+
+// The header and the memory of one new part.
+struct NewPart {
+  exr::Header header;
   exr::FrameBuffer frame;
-  for (const ExrChannel& channel : file.channels) {
-    if (header.channels().findChannel(channel.name)) throw std::logic_error("two channels named " + channel.name);
-    if (channel.bytes.size() != pixels * bytesOf(channel.type)) throw std::logic_error(channel.name + ": wrong size");
-    header.channels().insert(channel.name, exr::Channel(exrType(channel.type)));
-    insertSlice(frame, channel.name, channel.type, channel.bytes.data(), file.data);
+
+  explicit NewPart(const NewExr& file)
+      : header(boxOf(file.display), boxOf(file.data), static_cast<float>(file.pixelAspect)) {
+    header.compression() = exr::ZIP_COMPRESSION;
+    if (!file.part.empty()) header.setName(file.part);
+    for (const auto& [name, text] : file.attributes) header.insert(name, exr::StringAttribute(text));
+    for (const auto& [name, numbers] : file.matrices) {
+      IMATH_NAMESPACE::M44f matrix;
+      for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+          matrix[row][column] = numbers.at(static_cast<std::size_t>(row * 4 + column));
+      header.insert(name, exr::M44fAttribute(matrix));
+    }
+    const std::size_t pixels =
+        static_cast<std::size_t>(file.data.width()) * static_cast<std::size_t>(file.data.height());
+    for (const ExrChannel& channel : file.channels) {
+      if (header.channels().findChannel(channel.name)) throw std::logic_error("two channels named " + channel.name);
+      if (channel.bytes.size() != pixels * bytesOf(channel.type)) throw std::logic_error(channel.name + ": wrong size");
+      header.channels().insert(channel.name, exr::Channel(exrType(channel.type)));
+      insertSlice(frame, channel.name, channel.type, channel.bytes.data(), file.data);
+    }
+  }
+};
+
+}  // namespace
+
+void writeNewExr(const std::string& path, const NewExr& file) {
+  const NewPart part(file);
+  writeAtomically(path, [&](ExrSink& sink) {
+    exr::OutputFile out(sink, part.header, exrThreads());
+    writeLines(out, part.frame, file.data);
+  });
+}
+
+void writeNewExr(const std::string& path, const std::vector<NewExr>& files) {
+  std::vector<NewPart> parts(files.begin(), files.end());
+  std::vector<exr::Header> headers;
+  for (NewPart& part : parts) {
+    part.header.setType(exr::SCANLINEIMAGE);
+    headers.push_back(part.header);
   }
   writeAtomically(path, [&](ExrSink& sink) {
-    exr::OutputFile out(sink, header, exrThreads());
-    writeLines(out, frame, file.data);
+    exr::MultiPartOutputFile out(sink, headers.data(), static_cast<int>(headers.size()), false, exrThreads());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      exr::OutputPart part(out, static_cast<int>(i));
+      writeLines(part, parts[i].frame, files[i].data);
+    }
   });
 }
 

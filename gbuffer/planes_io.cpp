@@ -200,9 +200,7 @@ void readPlane(const ExrPart& part, const char* name, bool finite, const std::st
   }
 }
 
-}  // namespace
-
-void writePlanes(const std::string& path, const OitPlanes& planes, const RimPlanes& rims) {
+NewExr fileOf(const OitPlanes& planes, const RimPlanes& rims) {
   NewExr file;
   file.display = planes.display;
   file.data = planes.data;
@@ -249,12 +247,10 @@ void writePlanes(const std::string& path, const OitPlanes& planes, const RimPlan
   cameraToExr(planes.camera, matrices[0], matrices[1]);
   file.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);
   file.matrices["worldToNDC"].assign(&matrices[1][0][0], &matrices[1][0][0] + 16);
-  writeNewExr(path, file);
+  return file;
 }
 
-OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
-  const ExrDocument document = readExr(path);
-  const ExrPart& part = document.parts[0];
+OitPlanes planesOf(const ExrPart& part, const std::string& path, RimPlanes* rims) {
   if (part.deep) throw MeaningError(path + ": not OIT planes: found deep samples, expected what accumulate writes");
   const HeaderReader header(part, path);
   const OitInfo info = infoOf(header);
@@ -306,6 +302,92 @@ OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
     for (int y = 0; y < planes.data.height(); ++y)
       for (int x = 0; x < planes.data.width(); ++x) completePublished(planes, x, y);
   return planes;
+}
+
+constexpr const char* kPass = "pellucid:pass";
+// The beauty as shadows leave it, and where; all of them or none.
+constexpr const char* kRelit[] = {"oit.relit.R", "oit.relit.G", "oit.relit.B", "oit.relit.changed"};
+
+void addRelit(const Image<glm::vec4>& relit, NewExr& file) {
+  if (relit.empty()) return;
+  for (int c = 0; c < 4; ++c) {
+    ExrChannel channel{kRelit[c], PixelType::float32, std::vector<std::byte>(relit.size() * sizeof(float))};
+    for (std::size_t i = 0; i < relit.size(); ++i)
+      std::memcpy(channel.bytes.data() + i * sizeof(float), &relit[i][c], sizeof(float));
+    file.channels.push_back(std::move(channel));
+  }
+}
+
+Image<glm::vec4> relitOf(const ExrPart& part, const std::string& path) {
+  Image<glm::vec4> relit;
+  if (!part.find(kRelit[0])) return relit;
+  relit = Image<glm::vec4>(part.data.width(), part.data.height());
+  for (int c = 0; c < 4; ++c) {
+    const ExrChannel* channel = part.find(kRelit[c]);
+    if (!channel || channel->type != PixelType::float32)
+      throw MeaningError(
+          fmt::format("{}: {}: found no such float plane, expected all that accumulate writes", path, kRelit[c]));
+    for (std::size_t i = 0; i < relit.size(); ++i) relit[i][c] = channel->at(i);
+  }
+  return relit;
+}
+
+NewExr fileOf(const PassPlanes& pass) {
+  NewExr file = fileOf(pass.planes, pass.rims);
+  addRelit(pass.relit, file);
+  return file;
+}
+
+std::string passText(std::size_t index, std::size_t count) {
+  return fmt::format("{} of {}", index + 1, count);
+}
+
+}  // namespace
+
+void writePlanes(const std::string& path, const OitPlanes& planes, const RimPlanes& rims) {
+  writeNewExr(path, fileOf(planes, rims));
+}
+
+OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
+  const ExrDocument document = readExr(path);
+  if (document.parts.size() > 1)
+    throw MeaningError(fmt::format("{}: found {} parts, expected the planes of one pass", path, document.parts.size()));
+  return planesOf(document.parts[0], path, rims);
+}
+
+void writePasses(const std::string& path, const std::vector<PassPlanes>& passes) {
+  if (passes.size() == 1) {
+    writeNewExr(path, fileOf(passes[0]));
+    return;
+  }
+  std::vector<NewExr> parts;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    parts.push_back(fileOf(passes[i]));
+    parts.back().part = fmt::format("pass{:04d}", i + 1);
+    parts.back().attributes[kPass] = passText(i, passes.size());
+  }
+  writeNewExr(path, parts);
+}
+
+std::vector<PassPlanes> readPasses(const std::string& path) {
+  const ExrDocument document = readExr(path);
+  std::vector<PassPlanes> passes;
+  for (std::size_t i = 0; i < document.parts.size(); ++i) {
+    const ExrPart& part = document.parts[i];
+    const std::string expected = passText(i, document.parts.size());
+    const std::string found = part.text(kPass).value_or(passText(0, 1));
+    if (found != expected)
+      throw MeaningError(fmt::format("{}: part {}: found pass {}, expected {}: all passes of one picture, in order",
+                                     path, i, found, expected));
+    PassPlanes pass;
+    pass.planes = planesOf(part, path, &pass.rims);
+    pass.relit = relitOf(part, path);
+    if (i > 0 && pass.planes.data != passes[0].planes.data)
+      throw MeaningError(
+          fmt::format("{}: part {}: found another data window than the first part's, expected the same", path, i));
+    passes.push_back(std::move(pass));
+  }
+  return passes;
 }
 
 }  // namespace pellucid

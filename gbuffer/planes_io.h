@@ -1,6 +1,7 @@
 // OIT planes as an EXR file: layer `oit`, float, with a `pellucid:` header that says how the sums were made.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "gbuffer/accum.h"
 #include "gbuffer/rim_planes.h"
@@ -14,5 +15,17 @@ void writePlanes(const std::string& path, const OitPlanes& planes, const RimPlan
 // header.
 //   rims  is given those of the file; a file that has some must not be read without
 OitPlanes readPlanes(const std::string& path, RimPlanes* rims = nullptr);
+
+// One jittered pass of several, and what rims get from around where that is kept apart.
+struct PassPlanes {
+  OitPlanes planes;
+  RimPlanes rims;
+  // Of the first pass alone: the beauty as the layers' shadows leave it, and 1 where they changed it. Empty: nowhere.
+  Image<glm::vec4> relit;
+};
+// A part for each pass, in order; a single one as writePlanes() does it.
+void writePasses(const std::string& path, const std::vector<PassPlanes>& passes);
+// Throws what readPlanes() throws, and MeaningError for parts that are not all the passes of one picture.
+std::vector<PassPlanes> readPasses(const std::string& path);
 
 }  // namespace pellucid

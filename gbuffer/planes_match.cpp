@@ -43,7 +43,11 @@ void expectSamePlanes(const OitPlanes& planes, const std::string& file, const Oi
   pair.expect("weight", weightText(planes.info.weight), weightText(before.info.weight));
   pair.expect("normalisation", std::to_string(planes.info.normalisation), std::to_string(before.info.normalisation));
   pair.expect("tier", planes.info.tier, before.info.tier);
-  pair.expect("solid hash", planes.info.solidHash, before.info.solidHash);
+  if (planes.info.solidHash != before.info.solidHash)
+    throw MeaningError(
+        fmt::format("{}: found other solids than in {}, expected the same: accumulate each with --held-out-by the "
+                    "other, so that what stands behind a solid of one is in neither",
+                    file, fileBefore));
 }
 
 void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,

@@ -12,13 +12,15 @@ namespace {
 
 struct AccumulateFlags {
   std::string output;
+  std::vector<std::string> heldOutBy;
   RenderFlags render;
   RunFlags run;
 };
 
 void accumulate(const AccumulateFlags& flags) {
   const Threads threads(flags.run.threads);
-  const Request request = flags.render.request();
+  Request request = flags.render.request();
+  request.heldOutBy = flags.heldOutBy;
   Compositor compositor(request, [](const std::string& note) { say(note); });
   std::vector<PassPlanes> passes;
   const RunCounts counts =
@@ -26,7 +28,7 @@ void accumulate(const AccumulateFlags& flags) {
   if (request.foliage.rule == FoliageRule::apart && passes[0].rims.empty())
     say("no cut-out leaf waits for its occlusion: the planes carry no rims");
   Stages& stages = compositor.journal().stages;
-  stages.time("write", [&] { writePlanes(flags.output, passes[0].planes, passes[0].rims); });
+  stages.time("write", [&] { writePasses(flags.output, passes); });
   nlohmann::json report{{"output", flags.output}};
   reportRun(flags.run, stages, counts, compositor.device(), report);
 }
@@ -35,13 +37,15 @@ void accumulate(const AccumulateFlags& flags) {
 
 void addAccumulate(CLI::App& app) {
   auto flags = std::make_shared<AccumulateFlags>();
-  CLI::App* verb = app.add_subcommand("accumulate", "The transparent pass alone: sums of the layers at pixel centres");
+  CLI::App* verb = app.add_subcommand("accumulate", "The transparent pass alone: sums of the layers, for resolve");
   RenderVerb what;
   what.listsToo = false;
-  what.passes = false;
   what.resolves = false;
   what.keepsRimsApart = true;
   flags->render.addTo(*verb, what);
+  verb->add_option("--held-out-by", flags->heldOutBy,
+                   "Planes whose solids hide what stands behind them here: so all of them add up in resolve")
+      ->allow_extra_args(false);
   verb->add_option("-o,--output", flags->output, "EXR of planes to write")->required();
   flags->run.addTo(*verb);
   verb->callback([flags] { accumulate(*flags); });

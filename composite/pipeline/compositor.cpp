@@ -7,9 +7,11 @@
 #include "composite/antialias.h"
 #include "composite/pipeline/fit.h"
 #include "composite/pipeline/foliage_step.h"
+#include "composite/pipeline/held_out_planes.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/sums.h"
+#include "gbuffer/errors.h"
 #include "gbuffer/weight_text.h"
 
 namespace pellucid {
@@ -19,6 +21,34 @@ namespace {
 bool sameLight(const Request& a, const Request& b) {
   return a.passes == b.passes && a.particleLight == b.particleLight && a.shadows == b.shadows && a.fog == b.fog;
 }
+
+// The beauty as shadows leave it, for a file of planes; empty where they changed nothing.
+Image<glm::vec4> relitPicture(const Lighting& lighting) {
+  Image<glm::vec4> relit;
+  if (lighting.relit.beauty.empty()) return relit;
+  relit = lighting.relit.beauty;
+  for (std::size_t i = 0; i < relit.size(); ++i) relit[i].a = lighting.shadows.touched[i] ? 1.0f : 0.0f;
+  return relit;
+}
+
+// While it lives, the pass draws over another depth of the same picture. Without a pass there is nothing to draw.
+class DrawnOverPicture {
+ public:
+  DrawnOverPicture(TransparentPass* pass, const GBuffer& drawnOver, const GBuffer& own, const Camera& camera)
+      : pass_(pass), own_(own), camera_(camera) {
+    if (pass_) pass_->over(drawnOver, camera);
+  }
+  ~DrawnOverPicture() {
+    if (pass_) pass_->over(own_, camera_);
+  }
+  DrawnOverPicture(const DrawnOverPicture&) = delete;
+  DrawnOverPicture& operator=(const DrawnOverPicture&) = delete;
+
+ private:
+  TransparentPass* pass_;
+  const GBuffer& own_;
+  const Camera& camera_;
+};
 
 }  // namespace
 
@@ -136,27 +166,48 @@ shading::WeightSettings Compositor::fitWeight(Request request) {
 }
 
 RunCounts Compositor::accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each) {
+  if (shot_->deepOpaque)
+    throw UsageError(request.shot.opaque +
+                     ": accumulate: found a deep picture, each of whose samples would need planes of its own, expected "
+                     "a flat one: composite takes both");
   const Run run = prepare(request);
+  const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
+  const OtherSolids others(request.heldOutBy, gbuffer, run.plan.passes);
   RunCounts counts;
   const Plan sums = sumsPlanOf(run.plan, facts_);
-  const PaintContext context{sums, *shot_, run.lighting->picture, *run.sources, device_, journal_, counts};
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, i, run.plan.passes);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
     sample.normalisation = sums.pass.normalisation;
     PassPlanes made;
-    made.planes = journal_.time("transparent pass", [&] { return sumsOf(context, sample); });
+    if (others.empty()) {
+      made = passPlanes(sums, sample, run, run.lighting->picture, request, counts);
+    } else {
+      const GBuffer held = others.before(gbuffer, i);
+      const DrawnOverPicture over(triangles(), held, gbuffer, shot_->camera);
+      made = passPlanes(sums, sample, run, {&held, nullptr}, request, counts);
+      others.addTo(made.planes, i);
+    }
     made.planes.info.method = run.plan.method;
-    if (request.foliage.rule == FoliageRule::apart && triangles())
-      made.rims = journal_.time("rims", [&] { return triangles()->rims(fullResolutionPart(sums, sample)); });
-    if (!made.rims.empty()) ++counts.passes;
+    if (i == 0) made.relit = relitPicture(*run.lighting);
     shows = shows || anyLayers(made.planes);
     each(std::move(made));
   }
   if (!shows) noteThatNothingShows(*shot_, journal_);
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   return counts;
+}
+
+PassPlanes Compositor::passPlanes(const Plan& sums, const PassSettings& sample, const Run& run,
+                                  const LitPicture& picture, const Request& request, RunCounts& counts) {
+  const PaintContext context{sums, *shot_, picture, *run.sources, device_, journal_, counts};
+  PassPlanes made;
+  made.planes = journal_.time("transparent pass", [&] { return sumsOf(context, sample); });
+  if (request.foliage.rule == FoliageRule::apart && triangles())
+    made.rims = journal_.time("rims", [&] { return triangles()->rims(fullResolutionPart(sums, sample)); });
+  if (!made.rims.empty()) ++counts.passes;
+  return made;
 }
 
 RunCounts Compositor::listFragments(const Request& request, const ListSink& sink) {

@@ -10,15 +10,9 @@
 #include "composite/pipeline/plan.h"
 #include "composite/pipeline/result.h"
 #include "composite/pipeline/validate.h"
-#include "gbuffer/rim_planes.h"
+#include "gbuffer/planes_io.h"
 
 namespace pellucid {
-
-// The sums of one jittered pass, and what rims get from around where that is kept apart.
-struct PassPlanes {
-  OitPlanes planes;
-  RimPlanes rims;
-};
 
 // Not for several threads at once: it holds a GL context, which is current on the thread that first used it.
 class Compositor {
@@ -43,7 +37,7 @@ class Compositor {
   shading::WeightSettings fitWeight(Request request);
   // Composites. The picture's bits do not depend on what was run before.
   Result run(const Request& request);
-  // The sums alone, pass by pass in order, as `resolve` takes them.
+  // The sums alone, pass by pass in order, as `resolve` takes them. Of a flat picture: throws UsageError for a deep one.
   //   each  takes them as they are made
   RunCounts accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each);
   // Every fragment at pixel centres, in windows that together cover the data window.
@@ -59,6 +53,8 @@ class Compositor {
   const Lighting& lightOf(const Request& request);
   TransparentPass* triangles();
   Run prepare(const Request& request);
+  PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, const Run& run, const LitPicture& picture,
+                        const Request& request, RunCounts& counts);
   Veil paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal, RunCounts& counts);
 
   Journal journal_;

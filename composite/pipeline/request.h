@@ -144,6 +144,8 @@ struct Request {
       64;                // texels along the longest edge of what tells particles of the lamps; 0: nothing is in the way
   bool measure = false;  // composite the sorted truth too
   std::vector<LayerName> layers;
+  // Of accumulate(): files of planes whose solids hide what stands behind them, so that all of them add up.
+  std::vector<std::string> heldOutBy;
   int device = -1;  // EGL device; -1 takes the first
 };
 

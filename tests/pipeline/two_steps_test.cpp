@@ -1,0 +1,152 @@
+// accumulate, then resolve, is composite --method phenomenological, bit for bit: the picture stops at a file and goes
+// on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "composite/pipeline/compositor.h"
+#include "composite/pipeline/resolve_planes.h"
+#include "tests/pipeline/shot_files.h"
+#include "tests/support/program.h"
+#include "tests/support/shots.h"
+
+namespace pellucid {
+namespace {
+
+using namespace test;
+
+class TwoSteps : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = freshFolder("pipeline-two-steps");
+    files = writeShotFiles(folder);
+  }
+  static Image<glm::vec4> inTwoSteps(const Request& request, std::vector<std::string> planes = {}) {
+    if (planes.empty()) {
+      planes = {folder + "/planes.exr"};
+      accumulate(request, planes[0]);
+    }
+    PlanesRequest resolve;
+    resolve.opaque = request.shot.opaque;
+    resolve.planes = planes;
+    Journal journal;
+    return resolvePlanes(resolve, journal).picture.rgba;
+  }
+  static void accumulate(const Request& request, const std::string& path) {
+    Compositor compositor(request);
+    std::vector<PassPlanes> passes;
+    compositor.accumulate(request, [&](PassPlanes&& pass) { passes.push_back(std::move(pass)); });
+    writePasses(path, passes);
+  }
+  static Image<glm::vec4> atOnce(const Request& request) {
+    Compositor compositor(request);
+    return compositor.run(request).picture.rgba;
+  }
+  static ShotFiles files;
+  static std::string folder;
+};
+ShotFiles TwoSteps::files;
+std::string TwoSteps::folder;
+
+std::size_t differing(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (a[i] != b[i]) ++count;
+  return count;
+}
+
+struct Way {
+  const char* name;
+  void (*ask)(Request& request);
+};
+const Way kWays[] = {
+    {"plain", [](Request&) {}},
+    {"four passes", [](Request& r) { r.passes = 4; }},
+    {"exact", [](Request& r) { r.tier = Tier::exact; }},
+    {"published", [](Request& r) { r.tier = Tier::published; }},
+    {"shadows by rays", [](Request& r) { r.shadows.source = ShadowSource::rays; }},
+    {"shadows by maps",
+     [](Request& r) {
+       r.shadows.source = ShadowSource::maps;
+       r.shadows.size = 256;
+     }},
+    {"fog",
+     [](Request& r) {
+       r.fog.text = FogText();
+       r.fog.text->medium.density = 0.05;
+       r.fog.text->hasDensity = true;
+     }},
+    {"low resolution",
+     [](Request& r) {
+       r.shot.scene.overrides = {"smoke.lowResolution=true"};
+       r.lowResolution.factor = 4;
+     }},
+    {"fitted weight", [](Request& r) { r.sums.fitWeight = true; }},
+    {"deep layers", [](Request&) {}},  // the files are the test's
+};
+
+TEST_F(TwoSteps, GiveTheBitsOfComposite) {
+  for (const Way& first : kWays)
+    for (const Way& second : kWays) {
+      const auto shadows = [](const Way& way) { return std::string(way.name).find("shadows") != std::string::npos; };
+      if (&first != &second && shadows(first) && shadows(second)) continue;  // by rays or by maps
+      Request request = requestOf(files.flat, files.scene);
+      const std::string names = std::string(first.name) + ", " + second.name;
+      SCOPED_TRACE(names);
+      for (const Way* way : {&first, &second}) {
+        if (std::string(way->name) == "deep layers")
+          request.shot.inputs = {files.scene, files.deepLayers};
+        else
+          way->ask(request);
+      }
+      EXPECT_EQ(differing(inTwoSteps(request), atOnce(request)), 0u);
+    }
+}
+
+TEST_F(TwoSteps, OtherMethodsThatAreSumsAreThoseOfComposite) {
+  for (const char* method : {"sum", "average", "weighted", "blended"}) {
+    Request request = requestOf(files.flat, files.scene);
+    request.method = method;
+    request.paint = paintOf(method);
+    const Image<glm::vec4> two = inTwoSteps(request), one = atOnce(request);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < two.size(); ++i)
+      for (int c = 0; c < 4; ++c)
+        largest = std::max(largest, std::abs(static_cast<double>(two[i][c]) - static_cast<double>(one[i][c])));
+    // composite adds sum and average in doubles, planes hold floats.
+    EXPECT_LE(largest, 2e-6) << method;
+  }
+}
+
+TEST_F(TwoSteps, PlanesThatHoldEachOtherOutAddUp) {
+  const std::string near = folder + "/near.glb", far = folder + "/far.glb", both = folder + "/both.glb";
+  const Quad solid{{-1.0f, -1.0f, -4.0f}, {1.2f, 0, 0}, {0, 2, 0}, unlit(0.9f, 0.1f, 0.1f, 1.0f)};
+  const Quad pane{{-2.0f, -2.0f, -5.0f}, {4.0f, 0, 0}, {0, 4, 0}, unlit(0.1f, 0.6f, 0.2f, 0.4f)};
+  const Quad front{{-0.5f, -0.5f, -3.0f}, {2.0f, 0, 0}, {0, 1, 0}, unlit(0.2f, 0.2f, 0.9f, 0.3f)};
+  writeGlb(near, {solid, front});
+  writeGlb(far, {pane});
+  writeGlb(both, {solid, front, pane});
+  for (const int passes : {1, 4}) {
+    Request request = requestOf(files.flat, near);
+    request.passes = passes;
+    request.tier = Tier::exact;
+    accumulate(request, folder + "/near.exr");
+    request.shot.inputs = {far};
+    accumulate(request, folder + "/far-alone.exr");
+    EXPECT_THROW(inTwoSteps(request, {folder + "/near.exr", folder + "/far-alone.exr"}), std::runtime_error);
+    request.heldOutBy = {folder + "/near.exr"};
+    accumulate(request, folder + "/far.exr");
+    const Image<glm::vec4> added = inTwoSteps(request, {folder + "/near.exr", folder + "/far.exr"});
+    request.heldOutBy.clear();
+    request.shot.inputs = {both};
+    const Image<glm::vec4> whole = atOnce(request);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < added.size(); ++i)
+      for (int c = 0; c < 4; ++c)
+        largest = std::max(largest, std::abs(static_cast<double>(added[i][c]) - static_cast<double>(whole[i][c])));
+    EXPECT_LE(largest, 1e-6) << passes;  // sums of two files are rounded once more
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
