@@ -4,10 +4,17 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "composite/denormals.h"
+#include "composite/layer_terms.h"
 
 namespace pellucid {
+namespace {
+
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+
+}  // namespace
 
 shading::Layer layerFrom(const Fragment& fragment) {
   shading::Layer layer;
@@ -43,78 +50,56 @@ void copySolids(const FragmentLists& lists, OitPlanes& planes) {
 
 namespace {
 
-void foldScatterPixel(const FragmentLists& lists, std::size_t pixel, const glm::vec4& solid, int px, int py,
-                      OitPlanes& planes) {
-  glm::vec4 refraction = planes.refraction.at(px, py);
-  float refractionZ = planes.light.at(px, py).a, diffuseZ = planes.diffuseZ.at(px, py);
-  for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
-    const Fragment& fragment = lists.fragments[i];
-    if (!takesPart(fragment, solid)) continue;
-    const shading::ScatterTargets added = shading::packScatter(layerFrom(fragment), scatterFrom(fragment));
-    refraction += added.refraction;
-    refractionZ += added.refractionZ;
-    diffuseZ = added.diffuseZ < diffuseZ ? added.diffuseZ : diffuseZ;
-    if (lists.disperses())
-      planes.dispersion.at(px, py) +=
-          shading::packDispersion(layerFrom(fragment), scatterFrom(fragment), lists.dispersion[i]);
+// Adds what `termsOf(place, terms)` says of every fragment that takes part, in list order.
+template <class TermsOf>
+void foldInto(const FragmentLists& lists, OitPlanes& planes, const TermsOf& termsOf) {
+  copySolids(lists, planes);
+  if (anyScatters(lists)) {
+    addScatterPlanes(planes);
+    if (lists.disperses()) addDispersionPlane(planes);
   }
-  planes.refraction.at(px, py) = refraction;
-  planes.light.at(px, py).a = refractionZ;
-  planes.diffuseZ.at(px, py) = diffuseZ;
+  const PixelSums pixels(planes);
+  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
+  const auto width = static_cast<std::size_t>(lists.window.width());
+  tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
+    const FlushDenormals flush;
+    for (int y = rows.begin(); y != rows.end(); ++y)
+      for (int x = 0; x < lists.window.width(); ++x) {
+        const std::size_t from = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+        const int px = left + x, py = top + y;
+        const std::size_t to =
+            static_cast<std::size_t>(py) * static_cast<std::size_t>(planes.data.width()) + static_cast<std::size_t>(px);
+        PlaneTerms sums = pixels.at(to);
+        float front = planes.frontZ[to], diffuse = planes.scatters() ? planes.diffuseZ[to] : kNowhere;
+        for (std::uint64_t i = lists.offsets[from]; i < lists.offsets[from + 1]; ++i) {
+          if (!takesPart(lists.fragments[i], lists.solid.at(x, y))) continue;
+          LayerTerms terms;
+          termsOf(i, terms);
+          for (std::size_t k = 0; k < kAddedSums; ++k) sums[k] += terms.sums[k];
+          front = std::min(front, terms.frontZ);
+          diffuse = std::min(diffuse, terms.diffuseZ);
+        }
+        pixels.set(to, sums);
+        planes.frontZ[to] = front;
+        if (planes.scatters()) planes.diffuseZ[to] = diffuse;
+      }
+  });
 }
 
 }  // namespace
 
 void foldScattering(const FragmentLists& lists, OitPlanes& planes) {
-  copySolids(lists, planes);
-  if (!anyScatters(lists)) return;
-  addScatterPlanes(planes);
-  if (lists.disperses()) addDispersionPlane(planes);
-  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
-  tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
-    const FlushDenormals flush;
-    for (int y = rows.begin(); y != rows.end(); ++y)
-      for (int x = 0; x < lists.window.width(); ++x) {
-        const auto pixel =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
-        foldScatterPixel(lists, pixel, lists.solid.at(x, y), left + x, top + y, planes);
-      }
-  });
+  if (!anyScatters(lists)) return copySolids(lists, planes);
+  foldInto(lists, planes, [&](std::size_t i, LayerTerms& terms) { addScattering(lists, i, terms); });
 }
 
 void foldFragments(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation,
                    OitPlanes& planes) {
-  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
-  tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
-    const FlushDenormals flush;
-    for (int y = rows.begin(); y != rows.end(); ++y)
-      for (int x = 0; x < lists.window.width(); ++x) {
-        const int px = left + x, py = top + y;
-        const auto pixel =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
-        shading::OitTargets sums = planes.at(px, py);
-        float front = planes.frontZ.at(px, py);
-        for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
-          const Fragment& fragment = lists.fragments[i];
-          if (!takesPart(fragment, lists.solid.at(x, y))) continue;
-          const shading::OitTargets added =
-              shading::packSums(shading::layerSums(layerFrom(fragment), weight, normalisation));
-          sums.radiance += added.radiance;
-          sums.weight += added.weight;
-          sums.opacity += added.opacity;
-          sums.depth += added.depth;
-          sums.light += added.light;
-          front = fragment.z < front ? fragment.z : front;
-        }
-        planes.radiance.at(px, py) = sums.radiance;
-        planes.weight.at(px, py) = sums.weight;
-        planes.opacity.at(px, py) = sums.opacity;
-        planes.depth.at(px, py) = sums.depth;
-        planes.light.at(px, py) = sums.light;
-        planes.frontZ.at(px, py) = front;
-      }
+  const bool scatters = anyScatters(lists);
+  foldInto(lists, planes, [&](std::size_t i, LayerTerms& terms) {
+    addSums(lists, i, weight, normalisation, terms);
+    if (scatters) addScattering(lists, i, terms);
   });
-  foldScattering(lists, planes);
 }
 
 }  // namespace pellucid

@@ -129,7 +129,7 @@ class Upsampler {
     const glm::vec4 mean = up.refraction / up.sums.share;
     layer.refraction = glm::vec4(factor * mean.x, factor * mean.y, mean.z, factor * factor * mean.w);
     layer.refractionZ = up.refractionZ / up.sums.share;
-    if (low_.disperses()) layer.dispersion = (factor / up.sums.share) * up.dispersion;
+    if (low_.disperses()) layer.dispersion = factor * (up.dispersion / up.sums.share);
     layer.diffuseZ = mean.w > 0.0f ? up.diffuseZ : INFINITY;
   }
 

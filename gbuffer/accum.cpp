@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "gbuffer/plane_values.h"
 #include "gbuffer/planes_match.h"
 
 namespace pellucid {
@@ -10,8 +11,21 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-void add(Image<glm::vec4>& to, const Image<glm::vec4>& from) {
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+// Adds plane by plane, or takes the nearer depth.
+void mergePlane(const PlaneSpec& plane, OitPlanes& a, const OitPlanes& b) {
+  const std::size_t pixels = a.radiance.size();
+  const bool nearest = plane.blend == PlaneBlend::minimum;
+  for (int c = 0; c < plane.components(); ++c) {
+    const PlaneValues to = valuesOf(a, plane.sum, c);
+    const ConstPlaneValues from = valuesOf(b, plane.sum, c);
+    for (std::size_t i = 0; i < pixels; ++i) to[i] = nearest ? std::min(to[i], from[i]) : to[i] + from[i];
+  }
+}
+
+// Transmission multiplies; offsets are summed, and their weight only says whether there is one.
+void mergePublished(OitPlanes& a, const OitPlanes& b) {
+  for (std::size_t i = 0; i < a.depth.size(); ++i) a.depth[i] *= b.depth[i];
+  for (std::size_t i = 0; i < a.refraction.size(); ++i) a.refraction[i].z = std::min(a.refraction[i].z, 1.0f);
 }
 
 }  // namespace
@@ -55,26 +69,11 @@ void mergePlanes(OitPlanes& a, const OitPlanes& b) {
 
 void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, const std::string& fileB) {
   expectSamePlanes(b, fileB, a, fileA);
-  add(a.radiance, b.radiance);
-  add(a.weight, b.weight);
-  add(a.opacity, b.opacity);
-  if (a.published())
-    for (std::size_t i = 0; i < a.depth.size(); ++i) a.depth[i] *= b.depth[i];
-  else
-    add(a.depth, b.depth);
-  add(a.light, b.light);
-  if (b.scatters()) {
-    addScatterPlanes(a);
-    add(a.refraction, b.refraction);
-    if (a.published())  // offsets are summed there, and their weight only says whether there is one
-      for (std::size_t i = 0; i < a.refraction.size(); ++i) a.refraction[i].z = std::min(a.refraction[i].z, 1.0f);
-    for (std::size_t i = 0; i < a.diffuseZ.size(); ++i) a.diffuseZ[i] = std::min(a.diffuseZ[i], b.diffuseZ[i]);
-  }
-  if (b.disperses()) {
-    addDispersionPlane(a);
-    add(a.dispersion, b.dispersion);
-  }
-  for (std::size_t i = 0; i < a.frontZ.size(); ++i) a.frontZ[i] = std::min(a.frontZ[i], b.frontZ[i]);
+  if (b.scatters()) addScatterPlanes(a);
+  if (b.disperses()) addDispersionPlane(a);
+  for (const PlaneSpec& plane : planesOf(modelOf(b)))
+    if (!(a.published() && plane.sum == PlaneSum::depth)) mergePlane(plane, a, b);
+  if (a.published()) mergePublished(a, b);
   for (std::size_t i = 0; i < a.solid.size(); ++i)
     if (b.solid[i].a < a.solid[i].a) a.solid[i] = b.solid[i];
 }

@@ -10,96 +10,11 @@
 
 #include "gbuffer/errors.h"
 #include "gbuffer/exr_document.h"
+#include "gbuffer/plane_values.h"
 #include "gbuffer/published.h"
 
 namespace pellucid {
 namespace {
-
-// The contract with whoever else reads these files: name, plane, component. Unit and range as in shaders/shared.
-struct VectorPlane {
-  const char* name;
-  Image<glm::vec4> OitPlanes::*image;
-  int component;
-  bool finite;  // a sum, in which infinity means damage
-};
-constexpr VectorPlane kPlanes[] = {
-    {"oit.A.R", &OitPlanes::radiance, 0, true},   {"oit.A.G", &OitPlanes::radiance, 1, true},
-    {"oit.A.B", &OitPlanes::radiance, 2, true},   {"oit.Wz", &OitPlanes::radiance, 3, true},
-    {"oit.W.R", &OitPlanes::weight, 0, true},     {"oit.W.G", &OitPlanes::weight, 1, true},
-    {"oit.W.B", &OitPlanes::weight, 2, true},     {"oit.count", &OitPlanes::weight, 3, true},
-    {"oit.O.R", &OitPlanes::opacity, 0, true},    {"oit.O.G", &OitPlanes::opacity, 1, true},
-    {"oit.O.B", &OitPlanes::opacity, 2, true},    {"oit.Oz", &OitPlanes::opacity, 3, true},
-    {"oit.tau.R", &OitPlanes::depth, 0, true},    {"oit.tau.G", &OitPlanes::depth, 1, true},
-    {"oit.tau.B", &OitPlanes::depth, 2, true},    {"oit.E.W", &OitPlanes::depth, 3, true},
-    {"oit.E.R", &OitPlanes::light, 0, true},      {"oit.E.G", &OitPlanes::light, 1, true},
-    {"oit.E.B", &OitPlanes::light, 2, true},      {"oit.solid.R", &OitPlanes::solid, 0, true},
-    {"oit.solid.G", &OitPlanes::solid, 1, true},  {"oit.solid.B", &OitPlanes::solid, 2, true},
-    {"oit.solid.Z", &OitPlanes::solid, 3, false},
-};
-constexpr const char* kFrontZ = "oit.front.Z";
-// Only in files of scenes that refract or diffuse; all of them or none.
-constexpr VectorPlane kScatterPlanes[] = {
-    {"oit.delta.X", &OitPlanes::refraction, 0, true}, {"oit.delta.Y", &OitPlanes::refraction, 1, true},
-    {"oit.delta.W", &OitPlanes::refraction, 2, true}, {"oit.D2", &OitPlanes::refraction, 3, true},
-    {"oit.delta.Z", &OitPlanes::light, 3, true},
-};
-constexpr const char* kDiffuseZ = "oit.diffuse.Z";
-// What tier "published" holds of it: PT17 table 2, decoded, and the solid plane.
-constexpr VectorPlane kPublishedPlanes[] = {
-    {"oit.A.R", &OitPlanes::radiance, 0, true},   {"oit.A.G", &OitPlanes::radiance, 1, true},
-    {"oit.A.B", &OitPlanes::radiance, 2, true},   {"oit.W", &OitPlanes::weight, 0, true},
-    {"oit.beta.R", &OitPlanes::depth, 0, true},   {"oit.beta.G", &OitPlanes::depth, 1, true},
-    {"oit.beta.B", &OitPlanes::depth, 2, true},   {"oit.solid.R", &OitPlanes::solid, 0, true},
-    {"oit.solid.G", &OitPlanes::solid, 1, true},  {"oit.solid.B", &OitPlanes::solid, 2, true},
-    {"oit.solid.Z", &OitPlanes::solid, 3, false},
-};
-constexpr VectorPlane kPublishedScatterPlanes[] = {
-    {"oit.delta.X", &OitPlanes::refraction, 0, true},
-    {"oit.delta.Y", &OitPlanes::refraction, 1, true},
-    {"oit.D2", &OitPlanes::refraction, 3, true},
-};
-
-// The planes of one kind of file: always there, or only when something scatters.
-struct PlaneSet {
-  std::vector<VectorPlane> vectors;
-  const char* scalarName = nullptr;  // none when null
-  Image<float> OitPlanes::*scalar = nullptr;
-};
-
-PlaneSet sumsOf(bool published) {
-  if (published) return {{std::begin(kPublishedPlanes), std::end(kPublishedPlanes)}};
-  return {{std::begin(kPlanes), std::end(kPlanes)}, kFrontZ, &OitPlanes::frontZ};
-}
-
-PlaneSet scatterOf(bool published) {
-  if (published) return {{std::begin(kPublishedScatterPlanes), std::end(kPublishedScatterPlanes)}};
-  return {{std::begin(kScatterPlanes), std::end(kScatterPlanes)}, kDiffuseZ, &OitPlanes::diffuseZ};
-}
-// Only in files of scenes that disperse; all of them or none.
-constexpr VectorPlane kDispersionPlanes[] = {
-    {"oit.dispersion.RX", &OitPlanes::dispersion, 0, true},
-    {"oit.dispersion.RY", &OitPlanes::dispersion, 1, true},
-    {"oit.dispersion.BX", &OitPlanes::dispersion, 2, true},
-    {"oit.dispersion.BY", &OitPlanes::dispersion, 3, true},
-};
-
-// Only in files whose rims wait for their occlusion; all of them or none.
-template <class T>
-struct RimPlane {
-  const char* name;
-  Image<T> RimPlanes::*image;
-  int component;
-};
-constexpr RimPlane<glm::vec4> kRimPlanes[] = {
-    {"oit.rim.R", &RimPlanes::averaged, 0}, {"oit.rim.G", &RimPlanes::averaged, 1},
-    {"oit.rim.B", &RimPlanes::averaged, 2}, {"oit.rim.W", &RimPlanes::averaged, 3},
-    {"oit.rim.E.R", &RimPlanes::added, 0},  {"oit.rim.E.G", &RimPlanes::added, 1},
-    {"oit.rim.E.B", &RimPlanes::added, 2},  {"oit.rim.Z", &RimPlanes::added, 3},
-};
-constexpr RimPlane<glm::vec2> kRimGradients[] = {
-    {"oit.rim.X", &RimPlanes::gradient, 0},
-    {"oit.rim.Y", &RimPlanes::gradient, 1},
-};
 
 // Numbers as text that reads back to the same bits.
 class NumberText {
@@ -200,6 +115,27 @@ void readPlane(const ExrPart& part, const char* name, bool finite, const std::st
   }
 }
 
+// Where a channel's numbers lie in memory.
+template <class Planes, class Rims>
+auto channelValues(Planes& planes, Rims& rims, const PlaneChannel& channel) {
+  const auto values = valuesOf(planes, channel.sum, channel.component);
+  return values ? values : valuesOf(rims, channel.sum, channel.component);
+}
+
+// Whether a file has any of a group's channels, and so must have all.
+bool hasGroup(const ExrPart& part, ChannelGroup group, bool published, const std::string& path) {
+  if (group == ChannelGroup::sums) return true;
+  const auto firstOf = [&](const std::vector<PlaneChannel>& channels) {
+    return std::find_if(channels.begin(), channels.end(),
+                        [&](const PlaneChannel& channel) { return part.find(channel.name) != nullptr; });
+  };
+  const std::vector<PlaneChannel>&channels = channelsOf(group, published), &any = channelsOf(group, false);
+  const auto stray = firstOf(any);
+  if (channels.empty() && stray != any.end())
+    throw InputError(fmt::format("{}: found {} in tier published, expected no such plane", path, stray->name));
+  return firstOf(channels) != channels.end();
+}
+
 NewExr fileOf(const OitPlanes& planes, const RimPlanes& rims) {
   NewExr file;
   file.display = planes.display;
@@ -213,25 +149,17 @@ NewExr fileOf(const OitPlanes& planes, const RimPlanes& rims) {
     }
     file.channels.push_back(std::move(channel));
   };
-  const auto addSet = [&](const PlaneSet& set) {
-    for (const VectorPlane& plane : set.vectors) {
-      const Image<glm::vec4>& image = planes.*plane.image;
-      addChannel(plane.name, [&](std::size_t i) { return image[i][plane.component]; });
+  const auto addGroup = [&](ChannelGroup group, bool there) {
+    if (!there) return;
+    for (const PlaneChannel& channel : channelsOf(group, planes.published())) {
+      const ConstPlaneValues values = channelValues(planes, rims, channel);
+      addChannel(channel.name, [values](std::size_t i) { return values[i]; });
     }
-    if (set.scalarName) addChannel(set.scalarName, [&](std::size_t i) { return (planes.*set.scalar)[i]; });
   };
-  addSet(sumsOf(planes.published()));
-  if (planes.scatters()) addSet(scatterOf(planes.published()));
-  if (planes.disperses())
-    for (const VectorPlane& plane : kDispersionPlanes)
-      addChannel(plane.name, [&](std::size_t i) { return planes.dispersion[i][plane.component]; });
-
-  if (!rims.empty()) {
-    for (const auto& plane : kRimPlanes)
-      addChannel(plane.name, [&](std::size_t i) { return (rims.*plane.image)[i][plane.component]; });
-    for (const auto& plane : kRimGradients)
-      addChannel(plane.name, [&](std::size_t i) { return (rims.*plane.image)[i][plane.component]; });
-  }
+  addGroup(ChannelGroup::sums, true);
+  addGroup(ChannelGroup::scattering, planes.scatters());
+  addGroup(ChannelGroup::dispersion, planes.disperses());
+  addGroup(ChannelGroup::rims, !rims.empty());
 
   file.attributes = {
       {"pellucid:method", planes.info.method},
@@ -259,45 +187,20 @@ OitPlanes planesOf(const ExrPart& part, const std::string& path, RimPlanes* rims
   OitPlanes planes = published ? emptyPublishedPlanes(part.display, part.data) : emptyPlanes(part.display, part.data);
   planes.info = info;
   planes.camera = camera;
-  const auto readSet = [&](const PlaneSet& set) {
-    for (const VectorPlane& plane : set.vectors) {
-      Image<glm::vec4>& image = planes.*plane.image;
-      readPlane(part, plane.name, plane.finite, path,
-                [&](std::size_t i, float value) { image[i][plane.component] = value; });
+  RimPlanes found;
+  for (const ChannelGroup group :
+       {ChannelGroup::sums, ChannelGroup::scattering, ChannelGroup::dispersion, ChannelGroup::rims}) {
+    if (!hasGroup(part, group, published, path)) continue;
+    if (group == ChannelGroup::scattering) addScatterPlanes(planes);
+    if (group == ChannelGroup::dispersion) addDispersionPlane(planes);
+    if (group == ChannelGroup::rims) found = RimPlanes(part.data.width(), part.data.height());
+    for (const PlaneChannel& channel : channelsOf(group, published)) {
+      const PlaneValues values = channelValues(planes, found, channel);
+      readPlane(part, channel.name, channel.finite, path, [values](std::size_t i, float value) { values[i] = value; });
     }
-    if (set.scalarName)
-      readPlane(part, set.scalarName, false, path,
-                [&](std::size_t i, float value) { (planes.*set.scalar)[i] = value; });
-  };
-  readSet(sumsOf(published));
-  const PlaneSet scatter = scatterOf(published);
-  const bool scatters = std::any_of(scatter.vectors.begin(), scatter.vectors.end(),
-                                    [&](const VectorPlane& plane) { return part.find(plane.name) != nullptr; });
-  if (scatters || (scatter.scalarName && part.find(scatter.scalarName))) {
-    addScatterPlanes(planes);
-    readSet(scatter);
   }
-  const bool disperses = std::any_of(std::begin(kDispersionPlanes), std::end(kDispersionPlanes),
-                                     [&](const VectorPlane& plane) { return part.find(plane.name) != nullptr; });
-  if (disperses) {
-    if (published) throw InputError(path + ": found oit.dispersion.* in tier published, expected none");
-    addDispersionPlane(planes);
-    readSet({{std::begin(kDispersionPlanes), std::end(kDispersionPlanes)}});
-  }
-  const bool apart = std::any_of(std::begin(kRimPlanes), std::end(kRimPlanes),
-                                 [&](const RimPlane<glm::vec4>& plane) { return part.find(plane.name) != nullptr; });
-  if (apart) {
-    if (published) throw InputError(path + ": found oit.rim.* in tier published, expected none");
-    RimPlanes found(part.data.width(), part.data.height());
-    const auto readRim = [&](const auto& plane) {
-      auto& image = found.*plane.image;
-      readPlane(part, plane.name, true, path, [&](std::size_t i, float value) { image[i][plane.component] = value; });
-    };
-    for (const auto& plane : kRimPlanes) readRim(plane);
-    for (const auto& plane : kRimGradients) readRim(plane);
-    if (!rims) throw std::logic_error(path + ": its rims wait for their occlusion, which nobody takes");
-    *rims = std::move(found);
-  }
+  if (!found.empty() && !rims) throw std::logic_error(path + ": its rims wait for their occlusion, which nobody takes");
+  if (!found.empty()) *rims = std::move(found);
   if (published)
     for (int y = 0; y < planes.data.height(); ++y)
       for (int x = 0; x < planes.data.width(); ++x) completePublished(planes, x, y);

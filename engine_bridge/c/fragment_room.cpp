@@ -13,10 +13,10 @@ constexpr uint64_t kMostFragments = uint64_t{1} << 31;  // as far as shaders/gl/
 constexpr float kMostAPixel = 65536.0f;
 static_assert(kListBlocks == kMostStorage);
 
-// Outputs of what folds a stage; without scattering sums have one for the nearest depth, plane or none.
+// Outputs of what folds a stage.
 std::size_t outputsOf(const Permutation& p) {
-  const std::size_t planes = planesOf(p).size() + (p.lean() || p.scatters() ? 0u : 1u);
-  return p.low() ? std::max(planes, lowPlanes(p).size()) : planes;
+  const std::size_t planes = planesOf(p).size();
+  return p.low() ? std::max(planes, planesOf(lowPermutation(p)).size()) : planes;
 }
 
 }  // namespace

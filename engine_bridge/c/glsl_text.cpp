@@ -36,17 +36,24 @@ std::string withWords(const std::string& text, F changed) {
   return out;
 }
 
-// What a text declares outside of functions: functions, structs, outputs, constants, variables.
+// What a text declares outside of functions: functions, structs, outputs, constants, variables, macros, and macros that
+// it looks for. Outputs may stand in a macro, several of them in one line.
 std::set<std::string> declaredIn(const std::string& text) {
-  static const std::regex patterns[] = {
-      std::regex(R"(^(?:PLD_FN )?[A-Za-z]\w* (\w+)\()"), std::regex(R"(^struct (\w+))"),
-      std::regex(R"(^layout\(location = \d\) out \w+ (\w+);)"), std::regex(R"(^const \w+ (\w+) =)"),
-      std::regex(R"(^(?:bool|float|vec\d) (\w+)(?: =|;))")};
+  static const std::regex patterns[] = {std::regex(R"(^(?:PLD_FN )?[A-Za-z]\w* (\w+)\()"),
+                                        std::regex(R"(^struct (\w+))"), std::regex(R"(^const \w+ (\w+) =)"),
+                                        std::regex(R"(^(?:bool|float|vec\d) (\w+)(?: =|;))"),
+                                        std::regex(R"(^ *#(?:define|ifdef|ifndef) ((?!GL_)\w+))")};
+  static const std::regex several[] = {std::regex(R"(layout\(location = \d\) out \w+ (\w+);)"),
+                                       std::regex(R"(defined\(((?!GL_)\w+)\))")};
   std::set<std::string> names;
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);)
+  for (std::string line; std::getline(lines, line);) {
     for (const std::regex& pattern : patterns)
       if (std::smatch match; std::regex_search(line, match, pattern)) names.insert(match[1]);
+    for (const std::regex& pattern : several)
+      for (std::sregex_iterator match(line.begin(), line.end(), pattern), end; match != end; ++match)
+        names.insert((*match)[1]);
+  }
   return names;
 }
 
@@ -71,14 +78,12 @@ struct Names {
   const char* constants;  // of constants, in place of PLD_; empty leaves them
 };
 
-//   macros  of the defines, and those that the text looks for
-std::string hostText(const std::string& file, const std::vector<std::string>& defines, std::set<std::string> macros,
-                     int version, const SeamPlaces& at, const Names& names) {
+std::string hostText(const std::string& file, const std::vector<std::string>& defines, int version,
+                     const SeamPlaces& at, const Names& names) {
   std::string text = shaderSource(file, defines);
   text.erase(0, text.find('\n') + 1);  // #version
   text.erase(0, std::string("#define PLD_FN\n").size());
-  std::set<std::string> own = declaredIn(text);
-  own.merge(macros);
+  const std::set<std::string> own = declaredIn(text);
   const bool places = version >= 420;
   const auto unit = [&](int i) {
     return places ? "layout(binding = " + std::to_string(at.firstUnit + i) + ")" : std::string();
@@ -108,16 +113,11 @@ std::string hostText(const std::string& file, const std::vector<std::string>& de
 OwnText ownText(const std::string& file, const std::vector<std::string>& defines, int version) {
   static const std::regex bound(R"(layout\(binding = (\d+)\) (uniform sampler2D (\w+);))");
   OwnText own;
-  std::istringstream lines(shaderSource(file, defines));
-  std::string text;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.rfind("#version", 0) == 0) continue;
-    if (std::smatch match; std::regex_search(line, match, bound)) {
-      own.samplers.push_back({match[3], std::stoi(match[1])});
-      line = match[2];
-    }
-    text += line + '\n';
-  }
+  std::string text = shaderSource(file, defines);
+  text.erase(0, text.find('\n') + 1);  // #version
+  for (std::sregex_iterator match(text.begin(), text.end(), bound), end; match != end; ++match)
+    own.samplers.push_back({(*match)[3], std::stoi((*match)[1])});
+  text = std::regex_replace(text, bound, "$2");
   own.text = "#version " + std::to_string(version) + " core\n" +
              withWords(text, [&](const std::string& word) { return withoutPreciseBelow400(word, version); });
   return own;
@@ -146,52 +146,13 @@ const char* casterMark(bool coloured) {
 std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
   std::vector<std::string> defines = seamDefines(permutation, stage);
   defines.push_back("SCALE " + seamMark(permutation, stage));
-  return hostText("gl/seam.glsl", defines,
-                  {"PUBLISHED",
-                   "GREY",
-                   "LEAN",
-                   "HALF",
-                   "FRONT_TAIL",
-                   "SCATTER",
-                   "DIFFUSE_IN_ALPHA",
-                   "NO_DIFFUSE",
-                   "REFRACTS",
-                   "DIFFUSES",
-                   "DISPERSION",
-                   "SOLIDS",
-                   "EXACT",
-                   "LISTS_OFFSETS",
-                   "STAGE_SOLIDS",
-                   "STAGE_FRONT",
-                   "STAGE_RIMS",
-                   "RIMS",
-                   "RIMS_HERE",
-                   "DEPTH_IN_SHADER",
-                   "UNCOUNTED",
-                   "WEIGHT",
-                   "NORMALISATION",
-                   "ROWS",
-                   "UNITS",
-                   "EXPOSURE",
-                   "ORTHOGRAPHIC",
-                   "RANGE_NEAR",
-                   "RANGE_FAR",
-                   "EXPONENT",
-                   "REFRACT",
-                   "REFRACT_DISTANCE",
-                   "DIFFUSION_K0",
-                   "DIFFUSION_K1",
-                   "FOCAL_X",
-                   "FOCAL_Y",
-                   "SCALE"},
-                  version, places, {"PLD_SEAM", "pld_", ""});
+  return hostText("gl/seam.glsl", defines, version, places, {"PLD_SEAM", "pld_", ""});
 }
 
 std::string casterText(bool coloured, int version, const SeamPlaces& places) {
   std::vector<std::string> defines{std::string("METRIC ") + casterMark(coloured)};
   if (!coloured) defines.emplace_back("GREY");
-  return hostText("gl/caster_seam.glsl", defines, {"GREY", "METRIC"}, version, places,
-                  {"PLD_CASTER_SEAM", "pld_c_", "PLD_C_"});
+  return hostText("gl/caster_seam.glsl", defines, version, places, {"PLD_CASTER_SEAM", "pld_c_", "PLD_C_"});
 }
 
 std::string shadowText(const ShadowShape& shape, int version, const SeamPlaces& places) {
@@ -199,7 +160,7 @@ std::string shadowText(const ShadowShape& shape, int version, const SeamPlaces& 
   return hostText("gl/shadow_seam.glsl",
                   {define("LIGHTS", shape.lights), define("FACES", shape.faces), define("EDGE", shape.edge),
                    define("CHANNELS", shape.channels)},
-                  {"LIGHTS", "FACES", "EDGE", "CHANNELS"}, version, places, {"PLD_SHADOW_SEAM", "pld_s_", "PLD_S_"});
+                  version, places, {"PLD_SHADOW_SEAM", "pld_s_", "PLD_S_"});
 }
 
 }  // namespace pellucid::c

@@ -1,34 +1,29 @@
 #include "engine_bridge/c/low_stage.h"
 
 #include "engine_bridge/c/stage_plan.h"
+#include "shaders/plane_defines.h"
 
 namespace pellucid::c {
 
 void LowStage::create() {
   for (GLuint* frame : {&frame_, &depthFrame_, &texelFrame_, &overFrame_}) device_.makeFrame(*frame);
-  if (device_.permutation.low())
-    for (const PlaneSpec& spec : lowPlanes(device_.permutation)) sums_.push_back({spec, 0});
+  const Permutation& p = device_.permutation;
+  if (!p.low()) return;
+  sums_ = planesFrom(planesOf(lowPermutation(p)));
+  over_ = planesFrom(pellucid::planesOf(modelOf(p), PlaneStage::over));
 }
 
 std::string LowStage::build() {
   const Permutation& p = device_.permutation;
   if (!p.low()) return {};
-  std::vector<std::string> solids, upsample{"NORMALISATION 0"};
+  std::vector<std::string> solids;
   if (!p.has(PLD_FEATURE_SOLIDS)) solids.emplace_back("NO_SOLIDS");
-  upsample.insert(upsample.end(), solids.begin(), solids.end());
-  if (p.grey()) upsample.emplace_back("GREY");
-  if (p.scatters()) upsample.emplace_back("SCATTER");
-  for (const std::string& place : scatterPlaces(p)) upsample.push_back(place);
-  if (p.has(PLD_FEATURE_DISPERSION)) upsample.emplace_back("DISPERSION");
-  if (p.tier == PLD_TIER_HALF) upsample.emplace_back("HALF");
-  if (p.lowOver()) upsample.emplace_back("FRONT_TAIL");
+  const Permutation low = lowPermutation(p);
   std::string failure = depth_.build(device_.gl, "gl/low_depth.frag", solids);
   // A texel's own light: what it bends and spreads is taken from its sums.
-  std::vector<std::string> texel = resolveDefines(lowPermutation(p));
-  std::erase(texel, "SCATTER");
-  std::erase(texel, "DISPERSION");
-  if (failure.empty()) failure = texel_.build(device_.gl, "gl/low_texel.frag", texel);
-  if (failure.empty()) failure = upsample_.build(device_.gl, "gl/upsample.frag", upsample);
+  if (failure.empty()) failure = texel_.build(device_.gl, "gl/low_texel.frag", resolveDefines(low, false));
+  if (failure.empty())
+    failure = upsample_.build(device_.gl, "gl/upsample.frag", upsampleDefines(modelOf(p), modelOf(low)));
   return failure;
 }
 
@@ -43,9 +38,9 @@ void LowStage::destroy() {
 }
 
 void LowStage::release() {
-  for (Plane& plane : sums_) device_.releaseTexture(plane.texture);
+  releasePlanes(device_, sums_);
+  releasePlanes(device_, over_);
   for (GLuint& one : texels_) device_.releaseTexture(one);
-  for (GLuint& one : over_) device_.releaseTexture(one);
   device_.releaseTexture(farZ_);
   bytes_ = 0;
 }
@@ -57,14 +52,7 @@ bool LowStage::make(int width, int height) {
   farZ_ = device_.makeTexture(GL_R32F, wide, high, 32, bytes_);
   device_.attach(depthFrame_, GL_COLOR_ATTACHMENT0, farZ_);
   bool complete = device_.isComplete();
-  GLenum buffers[kDrawBuffers] = {};
-  for (Plane& plane : sums_) {
-    plane.texture = device_.makeTexture(plane.spec.format, wide, high, plane.spec.bits, bytes_);
-    buffers[plane.spec.attachment] = GL_COLOR_ATTACHMENT0 + plane.spec.attachment;
-    device_.attach(frame_, buffers[plane.spec.attachment], plane.texture);
-  }
-  gl.DrawBuffers(kDrawBuffers, buffers);
-  complete = device_.isComplete() && complete;
+  complete = makePlanes(device_, frame_, sums_, wide, high, bytes_) && complete;
   GLenum all[kTexels];
   for (GLuint i = 0; i < kTexels; ++i) {
     texels_[i] = device_.makeTexture(GL_RGBA32F, wide, high, 128, bytes_);
@@ -80,14 +68,14 @@ bool LowStage::make(int width, int height) {
 
 // The sums of the layers, and in place of the nearest what lies before it.
 void LowStage::makeOver(int width, int height) {
+  makePlanes(device_, overFrame_, over_, width, height, bytes_);
   GLenum buffers[kDrawBuffers] = {};
   for (const Plane& plane : planes_.layers()) {
-    const GLuint i = plane.spec.attachment;
+    const auto i = static_cast<GLuint>(plane.spec.target);
     buffers[i] = GL_COLOR_ATTACHMENT0 + i;
-    const bool front = i == 6 || i == 7, one = i == 7 && device_.permutation.grey();
-    if (front) over_[i - 6] = device_.makeTexture(one ? GL_R32F : GL_RGBA32F, width, height, one ? 32 : 128, bytes_);
-    device_.attach(overFrame_, buffers[i], front ? over_[i - 6] : plane.texture);
+    if (!textureOf(over_, plane.spec.sum)) device_.attach(overFrame_, buffers[i], plane.texture);
   }
+  device_.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, overFrame_);
   device_.gl.DrawBuffers(kDrawBuffers, buffers);
 }
 
@@ -110,7 +98,7 @@ void LowStage::resolveTexels(int wide, int high) const {
   const GlFunctions& gl = device_.gl;
   setPlainDrawing(gl, wide, high);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, texelFrame_);
-  for (const Plane& plane : sums_) device_.bind(plane.spec.unit, plane.texture);
+  bindPlanes(device_, sums_);
   device_.bind(5, farZ_);
   device_.use(texel_);
   gl.Uniform2i(texel_.place(gl, "pictureSize"), wide, high);
@@ -125,22 +113,15 @@ void LowStage::addToLayers(const pld_frame& frame) const {
   setAccumulation(gl, frame.width, frame.height);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, p.lowOver() ? overFrame_ : planes_.layersFrame());
   device_.allowColours(0, false);
-  for (const Plane& plane : planes_.layers()) {
-    const GLuint i = plane.spec.attachment;
-    gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    setBlending(gl, i, plane.spec.blend);
-  }
-  const GLfloat none[4] = {0, 0, 0, 0};
-  if (p.lowOver())
-    for (GLint i = 6; i < kDrawBuffers; ++i) gl.ClearBufferfv(GL_COLOR, i, none);
+  for (const Plane& plane : planes_.layers())
+    gl.ColorMaski(static_cast<GLuint>(plane.spec.target), GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  setBlending(gl, planes_.layers());
+  clearPlanes(gl, over_);
+  if (p.scatters()) bindPlanes(device_, sums_);  // before the others: what the texels hold already gives way to them
   for (GLuint i = 0; i < kTexels; ++i) device_.bind(i, texels_[i]);
   device_.bind(3, planes_.planarZ());
   if (p.lowOver()) device_.bind(5, planes_.frontZ());
   if (planes_.solid()) device_.bind(4, planes_.solid());
-  constexpr GLuint scatterUnits[] = {6, 7, 5, 8};  // of the planes of targets 4 to 7
-  for (const Plane& plane : sums_)
-    if (plane.spec.attachment >= 4 && p.scatters())
-      device_.bind(scatterUnits[plane.spec.attachment - 4], plane.texture);
   device_.use(upsample_);
   gl.Uniform1f(upsample_.place(gl, "factor"), static_cast<float>(frame.low_factor));
   gl.Uniform2i(upsample_.place(gl, "texelCount"), wide, high);
@@ -149,8 +130,7 @@ void LowStage::addToLayers(const pld_frame& frame) const {
 }
 
 void LowStage::bindOver() const {
-  if (!device_.permutation.lowOver()) return;
-  for (GLuint i = 0; i < 2; ++i) device_.bind(11 + i, over_[i]);
+  bindPlanes(device_, over_);
 }
 
 void LowStage::drawView(pld_view view, const pld_frame& frame) const {

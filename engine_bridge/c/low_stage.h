@@ -39,8 +39,8 @@ class LowStage {
   const PlaneSet& planes_;
   Program depth_, texel_, upsample_, view_;
   GLuint frame_ = 0, depthFrame_ = 0, texelFrame_ = 0, overFrame_ = 0;
-  std::vector<Plane> sums_;
-  GLuint farZ_ = 0, texels_[kTexels] = {}, over_[2] = {};
+  std::vector<Plane> sums_, over_;
+  GLuint farZ_ = 0, texels_[kTexels] = {};
   uint64_t bytes_ = 0;
 };
 

@@ -262,7 +262,7 @@ pld_status pld_pass::queryPlane(pld_value what, uint64_t& value) {
                        static_cast<int>(what));
   value = 0;
   for (const Plane& one : planes_.layers())
-    if (one.spec.attachment == static_cast<GLuint>(plane)) value = one.texture;
+    if (one.spec.target == plane) value = one.texture;
   return PLD_OK;
 }
 
@@ -271,7 +271,7 @@ pld_status pld_pass::query(pld_value what, uint64_t& value) {
   switch (what) {
     case PLD_VALUE_BITS_PER_PIXEL:
       value = 0;
-      for (const Plane& plane : planes_.layers()) value += static_cast<uint64_t>(plane.spec.bits);
+      for (const Plane& plane : planes_.layers()) value += static_cast<uint64_t>(plane.spec.bits());
       return PLD_OK;
     case PLD_VALUE_BYTES:
       value = planes_.bytes() + low_.bytes() + rims_.bytes() + spread_.bytes() + room_.bytes();

@@ -2,7 +2,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <limits>
+
+#include "shaders/plane_defines.h"
 
 namespace pellucid::c {
 namespace {
@@ -41,6 +42,38 @@ void defineFixed(const Permutation& p, pld_stage stage, std::vector<std::string>
   }
 }
 
+PlaneStage planeStageOf(pld_stage stage) {
+  switch (stage) {
+    case PLD_STAGE_SOLIDS:
+      return PlaneStage::solids;
+    case PLD_STAGE_FRONT:
+      return PlaneStage::front;
+    case PLD_STAGE_RIMS:
+      return PlaneStage::rims;
+    default:
+      return PlaneStage::layers;
+  }
+}
+
+const char* nameOf(LayerPart part) {
+  switch (part) {
+    case LayerPart::published:
+      return "PLD_TIER_PUBLISHED";
+    case LayerPart::exact:
+      return "PLD_TIER_EXACT";
+    case LayerPart::front:
+      return "PLD_METHOD_FRONT_TAIL";
+    case LayerPart::dispersion:
+      return "PLD_FEATURE_DISPERSION";
+    case LayerPart::refraction:
+      return "PLD_FEATURE_REFRACTION";
+    case LayerPart::lowResolution:
+      return "PLD_FEATURE_LOW_RESOLUTION";
+    default:
+      return "PLD_FEATURE_REFRACTION or PLD_FEATURE_DIFFUSION";
+  }
+}
+
 }  // namespace
 
 bool isPerspective(const float* p) {
@@ -58,95 +91,49 @@ Focal focalOf(const pld_frame& frame, int pixelsATexel) {
           std::fabs(frame.projection[5]) * (0.5f * static_cast<float>(frame.height)) * scale};
 }
 
+LayerModel modelOf(const Permutation& p) {
+  LayerModel model;
+  model.tier = p.exact()                 ? PlaneTier::exact
+               : p.published()           ? PlaneTier::published
+               : p.tier == PLD_TIER_HALF ? PlaneTier::half
+                                         : PlaneTier::float32;
+  model.weight = static_cast<int>(p.weight);
+  model.coloured = p.has(PLD_FEATURE_COLOURED);
+  model.addsLight = p.light();
+  model.refracts = p.has(PLD_FEATURE_REFRACTION);
+  model.diffuses = p.has(PLD_FEATURE_DIFFUSION);
+  model.disperses = p.has(PLD_FEATURE_DISPERSION);
+  model.front = p.fronts();
+  model.nearestDepths = p.atLowResolution;
+  model.solids = p.has(PLD_FEATURE_SOLIDS);
+  model.rims = p.rimsApart();
+  model.lowResolution = p.low() && !p.atLowResolution;
+  return model;
+}
+
 std::string conflictOf(const Permutation& p) {
-  if (p.published() && p.fronts())
-    return "tier: found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, expected float or half";
-  if (p.published() && p.has(PLD_FEATURE_DISPERSION))
-    return "features: found PLD_FEATURE_DISPERSION in PLD_TIER_PUBLISHED, which holds one offset for all channels";
-  if (p.has(PLD_FEATURE_DISPERSION) && !p.has(PLD_FEATURE_REFRACTION))
-    return "features: found PLD_FEATURE_DISPERSION without PLD_FEATURE_REFRACTION";
-  if (p.scatters() && p.method != PLD_METHOD_PHENOMENOLOGICAL)
+  if (p.scatters() && p.method == PLD_METHOD_WEIGHTED)
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
-  if (p.low() && p.published())
-    return "features: found PLD_FEATURE_LOW_RESOLUTION in PLD_TIER_PUBLISHED, which keeps no depths to upsample by";
-  if (p.lowOver() && p.exact())
-    return "features: found PLD_FEATURE_LOW_RESOLUTION with PLD_METHOD_FRONT_TAIL in PLD_TIER_EXACT, which keeps no "
-           "nearest depth for it";
-  return {};
-}
-
-std::vector<std::string> scatterPlaces(const Permutation& p) {
-  if (!p.scatters() || p.published() || p.atLowResolution) return {};
-  return {p.diffuseInAlpha() ? "DIFFUSE_IN_ALPHA" : "NO_DIFFUSE"};
-}
-
-PlaneSpec nearestPlane() {
-  constexpr float far = std::numeric_limits<float>::infinity();
-  return {5, GL_R32F, 32, 9, BlendKind::minimum, {far, 0, 0, 0}};
+  const LayerConflict conflict = conflictOf(modelOf(p));
+  if (!conflict) return {};
+  return std::string("found ") + nameOf(conflict.part) + (conflict.without ? " without " : " with ") +
+         nameOf(conflict.other) + (conflict.reason[0] ? ", " : "") + conflict.reason;
 }
 
 std::vector<PlaneSpec> planesOf(const Permutation& p) {
-  constexpr float far = std::numeric_limits<float>::infinity();
-  if (p.published()) {
-    std::vector<PlaneSpec> planes{{0, GL_RGBA16F, 64, 1, BlendKind::add, {0, 0, 0, 0}},
-                                  {1, GL_RGBA8, 32, 2, BlendKind::product, {1, 1, 1, 0}}};
-    if (p.scatters()) planes.push_back({2, GL_RG8_SNORM, 16, 8, BlendKind::add, {0, 0, 0, 0}});
-    return planes;
-  }
-  const bool half = p.tier == PLD_TIER_HALF;
-  const GLenum four = half ? GL_RGBA16F : GL_RGBA32F, two = half ? GL_RG16F : GL_RG32F;
-  const int bits = half ? 64 : 128;
-  std::vector<PlaneSpec> planes;
-  const auto sum = [&](GLuint attachment, GLuint unit) {
-    planes.push_back({attachment, four, bits, unit, BlendKind::add, {0, 0, 0, 0}});
-  };
-  // With the nearest layer that diffuses, where there is one.
-  const auto sumAndNearest = [&](GLuint attachment, GLuint unit) {
-    if (p.diffuseInAlpha())
-      planes.push_back({attachment, four, bits, unit, BlendKind::alphaMinimum, {0, 0, 0, far}});
-    else
-      sum(attachment, unit);
-  };
-  sum(0, 1);
-  if (p.lean() && p.grey() && !p.scatters()) {
-    planes.push_back({1, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
-  } else if (p.lean() && p.grey()) {
-    sumAndNearest(1, 4);
-  } else if (p.lean()) {
-    sum(1, 2);
-    sumAndNearest(2, 4);
-  } else if (p.grey()) {
-    sumAndNearest(1, 3);
-    planes.push_back({2, two, bits / 2, 4, BlendKind::add, {0, 0, 0, 0}});
-  } else {
-    sum(1, 2);
-    sumAndNearest(2, 3);
-    sum(3, 4);
-  }
-  if (p.light()) sum(4, 7);
-  if (p.scatters()) {
-    if (p.atLowResolution) planes.push_back({5, GL_RG32F, 64, 9, BlendKind::minimum, {far, far, 0, 0}});
-    sum(6, 8);
-  }
-  if (p.has(PLD_FEATURE_DISPERSION)) sum(7, 10);
-  if (p.fronts()) {
-    sum(6, 8);
-    if (p.grey())
-      planes.push_back({7, half ? GLenum{GL_R16F} : GLenum{GL_R32F}, bits / 4, 10, BlendKind::add, {0, 0, 0, 0}});
-    else
-      sum(7, 10);
-  }
-  return planes;
+  return pellucid::planesOf(modelOf(p));
 }
 
 std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
-  std::vector<std::string> defines{"WEIGHT " + std::to_string(static_cast<int>(p.weight)), "NORMALISATION 0",
-                                   p.rows == PLD_ROWS_DOWN ? "ROWS 1.0f" : "ROWS (-1.0f)"};
+  const bool low = stage == PLD_STAGE_LOW, layers = stage == PLD_STAGE_LAYERS;
+  const LayerModel model = low ? atLowResolution(modelOf(p)) : modelOf(p);
+  // Of the exact tier a stage lists fragments, and gl/exact_fold.frag has the planes.
+  std::vector<std::string> defines = p.exact() ? weightDefines(model) : writeDefines(model, planeStageOf(stage));
+  defines.emplace_back(p.rows == PLD_ROWS_DOWN ? "ROWS 1.0f" : "ROWS (-1.0f)");
   defineFixed(p, stage, defines);
   const auto define = [&](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
   };
-  const bool low = stage == PLD_STAGE_LOW, layers = stage == PLD_STAGE_LAYERS;
   define("STAGE_SOLIDS", stage == PLD_STAGE_SOLIDS);
   define("STAGE_FRONT", stage == PLD_STAGE_FRONT);
   define("STAGE_RIMS", stage == PLD_STAGE_RIMS);
@@ -154,55 +141,22 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("RIMS_HERE", p.rimsInSeam() && layers);
   define("DEPTH_IN_SHADER", p.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS || low);
   define("SOLIDS", stage != PLD_STAGE_SOLIDS && !low && p.has(PLD_FEATURE_SOLIDS));
-  define("EXACT", p.exact());
-  define("LISTS_OFFSETS", p.exact() && listsOffsets(p, stage));
-  define("PUBLISHED", p.published());
   define("UNCOUNTED", p.published());
-  define("GREY", p.grey());
-  define("LEAN", p.lean());
-  define("HALF", p.tier == PLD_TIER_HALF && (layers || low));
-  define("FRONT_TAIL", p.frontStage() && layers);
-  define("SCATTER", p.scatters() && (layers || low));
-  if (layers)
-    for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
-  define("REFRACTS", p.has(PLD_FEATURE_REFRACTION) && (layers || low));
-  define("DIFFUSES", p.has(PLD_FEATURE_DIFFUSION) && (layers || low));
-  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && (layers || low));
+  define("REFRACTS", model.refracts && (layers || low));
+  define("DIFFUSES", model.diffuses && (layers || low));
+  if (!p.exact()) return defines;
+  define("EXACT", true);
+  define("LISTS_OFFSETS", listsOffsets(model, planeStageOf(stage)));
+  define("SCATTER", model.scatters() && (layers || low));
+  define("DISPERSION", model.disperses && (layers || low));
   return defines;
-}
-
-bool listsOffsets(const Permutation& p, pld_stage stage) {
-  return stage == PLD_STAGE_RIMS || (stage != PLD_STAGE_SOLIDS && p.scatters());
 }
 
 std::vector<std::string> foldDefines(const Permutation& p, pld_stage stage) {
-  std::vector<std::string> defines{"WEIGHT " + std::to_string(static_cast<int>(p.weight)), "NORMALISATION 0"};
-  const auto define = [&](const char* name, bool wanted) {
-    if (wanted) defines.emplace_back(name);
-  };
-  const bool layers = stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW;
-  define("STAGE_RIMS", stage == PLD_STAGE_RIMS);
-  define("LISTS_OFFSETS", listsOffsets(p, stage));
-  define("GREY", p.grey());
-  define("LEAN", p.lean());
-  define("FRONT_TAIL", p.fronts() && layers);
-  define("SCATTER", p.scatters() && layers);
-  if (layers)
-    for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
-  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION) && layers);
-  return defines;
-}
-
-std::vector<std::string> emptyDefines(const std::vector<PlaneSpec>& planes) {
-  std::vector<std::string> defines;
-  for (const PlaneSpec& plane : planes) {
-    std::string value;
-    for (const GLfloat x : plane.clear)
-      value += std::string(value.empty() ? "" : ", ") + (std::isinf(x) ? "intBitsToFloat(0x7f800000)"
-                                                         : x == 0.0f   ? "0.0f"
-                                                                       : "1.0f");
-    defines.push_back("PLANE_" + std::to_string(plane.attachment) + " vec4(" + value + ")");
-  }
+  const LayerModel model = modelOf(p);
+  std::vector<std::string> defines = writeDefines(model, planeStageOf(stage));
+  if (stage == PLD_STAGE_RIMS) defines.emplace_back("STAGE_RIMS");
+  if (listsOffsets(model, planeStageOf(stage))) defines.emplace_back("LISTS_OFFSETS");
   return defines;
 }
 
@@ -213,23 +167,10 @@ std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip) {
           depth == PLD_DEPTH_REVERSED ? "EMPTY 0.0f" : "EMPTY 1.0f"};
 }
 
-std::vector<std::string> resolveDefines(const Permutation& p) {
-  std::vector<std::string> defines{"PART_OF_TEXTURE", "NEAREST_SAMPLERS", "NO_SELF_MODULATION"};
-  const auto define = [&](const char* name, bool wanted) {
-    if (wanted) defines.emplace_back(name);
-  };
-  define("NO_DEPTH", !p.planarDepth());
-  define("NO_SOLIDS", !p.has(PLD_FEATURE_SOLIDS));
-  define("NO_LIGHT", !p.light());
-  define("PUBLISHED", p.published());
-  define("GREY", p.grey());
-  define("LEAN", p.lean());
-  define("HALF_SUMS", !p.inFloats());
-  define("FRONT_TAIL", p.fronts());
-  define("LOW_OVER", p.lowOver());
-  define("SCATTER", p.scatters());
-  for (const std::string& place : scatterPlaces(p)) defines.push_back(place);
-  define("DISPERSION", p.has(PLD_FEATURE_DISPERSION));
+std::vector<std::string> resolveDefines(const Permutation& p, bool showsThrough) {
+  std::vector<std::string> defines = readDefines(modelOf(p), showsThrough);
+  for (const char* name : {"PART_OF_TEXTURE", "NEAREST_SAMPLERS", "NO_SELF_MODULATION"}) defines.emplace_back(name);
+  if (!p.planarDepth()) defines.emplace_back("NO_DEPTH");
   return defines;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine_bridge/c/gl_functions.h"
+#include "shaders/plane_layout.h"
 
 namespace pellucid::c {
 
@@ -24,16 +25,11 @@ struct Permutation {
   bool fronts() const { return method == PLD_METHOD_FRONT_TAIL; }
   // Fragments are listed and summed at the end of a stage, not blended.
   bool exact() const { return tier == PLD_TIER_EXACT; }
-  bool inFloats() const { return tier == PLD_TIER_FLOAT || exact(); }
   // Whether the nearest layer is drawn apart; lists know it.
   bool frontStage() const { return fronts() && !exact(); }
   bool published() const { return tier == PLD_TIER_PUBLISHED; }
   bool grey() const { return !published() && !has(PLD_FEATURE_COLOURED); }
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || low()); }
-  // No layer adds light: half of the sums are not needed.
-  bool lean() const { return !published() && !light(); }
-  // The nearest layer that diffuses has a place beside a sum. At low resolution the nearest of all is wanted too.
-  bool diffuseInAlpha() const { return has(PLD_FEATURE_DIFFUSION) && !published() && !atLowResolution; }
   bool low() const { return has(PLD_FEATURE_LOW_RESOLUTION); }
   bool lowOver() const { return low() && fronts(); }  // what lies before the nearest layer has planes of its own
   bool rims() const { return has(PLD_FEATURE_RIMS); }
@@ -46,6 +42,8 @@ struct Permutation {
     return rims() || low() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR;
   }
 };
+
+LayerModel modelOf(const Permutation& permutation);
 
 // Whether pld_frame.projection, by columns, has clip w = -z; whether it has w = 1.
 bool isPerspective(const float* projection);
@@ -61,32 +59,14 @@ Focal focalOf(const pld_frame& frame, int pixelsATexel);
 // Empty when the parts go together, else what does not: a sentence.
 std::string conflictOf(const Permutation& permutation);
 
-// product: of rgb, ZERO, ONE_MINUS_SRC_COLOR; a adds. alphaMinimum: rgb adds
-enum class BlendKind { add, minimum, alphaMinimum, product };
-
-// One texture that layers are blended into.
-struct PlaneSpec {
-  GLuint attachment;
-  GLenum format;  // sized
-  int bits;
-  GLuint unit;  // where shaders/gl/resolve_here.glsl reads it
-  BlendKind blend;
-  GLfloat clear[4];
-};
 std::vector<PlaneSpec> planesOf(const Permutation& permutation);
-PlaneSpec nearestPlane();  // of low-resolution layers besides
 
-// Of shaders/gl/sums_output.glsl, lean_output.glsl and resolve_here.glsl: what lies where. Without SCATTER, which
-// stages and views choose.
-std::vector<std::string> scatterPlaces(const Permutation& permutation);
-// Defines of shaders/gl/seam.glsl for a stage; of empty_planes.frag; of planar_depth.frag; of resolve_here.glsl.
+// Defines of shaders/gl/seam.glsl for a stage; of planar_depth.frag; of resolve_here.glsl.
 std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage stage);
-std::vector<std::string> emptyDefines(const std::vector<PlaneSpec>& planes);
 std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip);
-std::vector<std::string> resolveDefines(const Permutation& permutation);
-// Of the exact tier: which blocks a stage's lists have, from block 0 without a gap; defines of
-// shaders/gl/exact_fold.frag.
-bool listsOffsets(const Permutation& permutation, pld_stage stage);
+//   showsThrough  false for what looks at a pixel's layers and not at the background behind them
+std::vector<std::string> resolveDefines(const Permutation& permutation, bool showsThrough = true);
+// Of the exact tier: defines of shaders/gl/exact_fold.frag.
 std::vector<std::string> foldDefines(const Permutation& permutation, pld_stage stage);
 
 }  // namespace pellucid::c

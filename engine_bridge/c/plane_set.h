@@ -12,8 +12,17 @@ struct Plane {
   GLuint texture = 0;
 };
 
-// Blends what is drawn to draw buffer `attachment`.
-void setBlending(const GlFunctions& gl, GLuint attachment, BlendKind kind);
+std::vector<Plane> planesFrom(const std::vector<PlaneSpec>& specs);
+// Makes the textures and draws to them by `frame`. False where the device cannot draw to all of them at once.
+bool makePlanes(const Device& device, GLuint frame, std::vector<Plane>& planes, int width, int height, uint64_t& bytes);
+void releasePlanes(const Device& device, std::vector<Plane>& planes);
+// Of the bound framebuffer.
+void clearPlanes(const GlFunctions& gl, const std::vector<Plane>& planes);
+void setBlending(const GlFunctions& gl, const std::vector<Plane>& planes);
+// Where shaders/gl/resolve_here.glsl reads them.
+void bindPlanes(const Device& device, const std::vector<Plane>& planes);
+// 0 for none.
+GLuint textureOf(const std::vector<Plane>& planes, PlaneSum sum);
 
 class PlaneSet {
  public:
@@ -26,10 +35,12 @@ class PlaneSet {
   void release();
 
   const std::vector<Plane>& layers() const { return layers_; }
+  const std::vector<Plane>& front() const { return front_; }
+  const std::vector<Plane>& solids() const { return solids_; }
   // 0 for what is not kept.
   GLuint planarZ() const { return planarZ_; }
-  GLuint frontZ() const { return frontZ_; }
-  GLuint solid() const { return solid_; }
+  GLuint frontZ() const { return textureOf(front_, PlaneSum::frontZ); }
+  GLuint solid() const { return textureOf(solids_, PlaneSum::solid); }
   GLuint layersFrame() const { return layersFrame_; }
   GLuint planarFrame() const { return planarFrame_; }
   GLuint frontFrame() const { return frontFrame_; }
@@ -38,8 +49,8 @@ class PlaneSet {
 
  private:
   Device& device_;
-  std::vector<Plane> layers_;
-  GLuint planarZ_ = 0, frontZ_ = 0, solid_ = 0, solidDepth_ = 0;
+  std::vector<Plane> layers_, front_, solids_;
+  GLuint planarZ_ = 0, solidDepth_ = 0;
   GLuint layersFrame_ = 0, planarFrame_ = 0, frontFrame_ = 0, solidFrame_ = 0;
   uint64_t bytes_ = 0;
 };

@@ -1,24 +1,33 @@
 #include "engine_bridge/c/rim_stage.h"
 
 #include "engine_bridge/c/textures.h"
+#include "shaders/plane_defines.h"
 
 namespace pellucid::c {
+namespace {
+
+constexpr int kFirstUnit = 0;  // of rims, where shaders/gl/rims_apply.frag reads them
+
+}  // namespace
 
 void RimStage::create() {
   device_.makeFrame(frame_);
+  if (device_.permutation.rimsApart())
+    rims_ = planesFrom(pellucid::planesOf(modelOf(device_.permutation), PlaneStage::rims));
 }
 
 std::string RimStage::build() {
   if (!device_.permutation.rimsApart()) return {};
-  return apply_.build(device_.gl, "gl/rims_apply.frag", resolveDefines(device_.permutation));
+  std::vector<std::string> defines = resolveDefines(device_.permutation, false);
+  defines.push_back(rimSamplers(kFirstUnit));
+  return apply_.build(device_.gl, "gl/rims_apply.frag", defines);
 }
 
 std::string RimStage::buildView() {
   if (!device_.permutation.rimsApart()) return {};
   // What rims take is looked at where it is, not where it is seen.
-  std::vector<std::string> defines = resolveDefines(device_.permutation);
-  std::erase(defines, "SCATTER");
-  std::erase(defines, "DISPERSION");
+  std::vector<std::string> defines = resolveDefines(device_.permutation, false);
+  defines.push_back(rimSamplers());
   return view_.build(device_.gl, "gl/view_rims.frag", defines);
 }
 
@@ -31,28 +40,12 @@ void RimStage::destroy() {
 
 bool RimStage::make(int width, int height) {
   if (!device_.permutation.rimsApart()) return true;
-  GLenum all[kPlanes];
-  for (GLuint i = 0; i < kPlanes; ++i) {
-    rims_[i] = device_.makeTexture(i < 2 ? GL_RGBA32F : GL_RG32F, width, height, i < 2 ? 128 : 64, bytes_);
-    all[i] = GL_COLOR_ATTACHMENT0 + i;
-    device_.attach(frame_, all[i], rims_[i]);
-  }
-  device_.gl.DrawBuffers(kPlanes, all);
-  return device_.isComplete();
+  return makePlanes(device_, frame_, rims_, width, height, bytes_);
 }
 
 void RimStage::release() {
-  for (GLuint& one : rims_) device_.releaseTexture(one);
+  releasePlanes(device_, rims_);
   bytes_ = 0;
-}
-
-void RimStage::clear() const {
-  const GLfloat none[4] = {0, 0, 0, 0};
-  for (GLint i = 0; i < kPlanes; ++i) device_.gl.ClearBufferfv(GL_COLOR, i, none);
-}
-
-void RimStage::setBlend() const {
-  for (GLuint i = 0; i < kPlanes; ++i) setBlending(device_.gl, i, BlendKind::add);
 }
 
 pld_status RimStage::darken(const pld_frame& frame) {
@@ -63,15 +56,16 @@ pld_status RimStage::darken(const pld_frame& frame) {
                         frame.occlusion_texture);
   setPlainDrawing(gl, frame.width, frame.height);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, planes_.layersFrame());
-  for (GLuint i = 0; i < kDrawBuffers; ++i) {
-    const bool holds = i == 0 || (i == 4 && device_.permutation.light());
-    gl.ColorMaski(i, holds, holds, holds, GL_FALSE);
-    if (!holds) continue;
+  device_.allowColours(0, false);
+  for (const Plane& plane : planes_.layers()) {
+    if (plane.spec.sum != PlaneSum::radiance && plane.spec.sum != PlaneSum::light) continue;
+    const auto i = static_cast<GLuint>(plane.spec.target);
+    gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
     gl.Enablei(GL_BLEND, i);
     gl.BlendFuncSeparatei(i, GL_ONE, GL_ONE, GL_ONE, GL_ONE);
     gl.BlendEquationSeparatei(i, GL_FUNC_REVERSE_SUBTRACT, GL_FUNC_REVERSE_SUBTRACT);
   }
-  for (GLuint i = 0; i < kPlanes; ++i) device_.bind(i, rims_[i]);
+  for (const Plane& plane : rims_) device_.bind(static_cast<GLuint>(kFirstUnit + plane.spec.target), plane.texture);
   device_.bind(3, planes_.planarZ());
   device_.bind(4, frame.occlusion_texture);
   if (planes_.solid()) device_.bind(5, planes_.solid());
@@ -85,7 +79,7 @@ pld_status RimStage::darken(const pld_frame& frame) {
 void RimStage::drawView(pld_view view, const pld_frame& frame) const {
   const GlFunctions& gl = device_.gl;
   device_.use(view_);
-  for (GLuint i = 0; i < kPlanes; ++i) device_.bind(11 + i, rims_[i]);
+  bindPlanes(device_, rims_);
   device_.bind(14, frame.occlusion_texture);
   gl.Uniform2i(view_.place(gl, "pictureSize"), frame.width, frame.height);
   gl.Uniform1i(view_.place(gl, "form"), static_cast<GLint>(frame.occlusion));

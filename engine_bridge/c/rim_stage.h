@@ -17,8 +17,7 @@ class RimStage {
   void release();
 
   GLuint frame() const { return frame_; }
-  void clear() const;     // the bound framebuffer
-  void setBlend() const;  // for the host's draws
+  const std::vector<Plane>& planes() const { return rims_; }
   // Takes what the opaque pixels beside rims hide from the sums that the layers have left.
   pld_status darken(const pld_frame& frame);
   // PLD_VIEW_RIM_*, with the sums bound.
@@ -26,11 +25,11 @@ class RimStage {
   uint64_t bytes() const { return bytes_; }
 
  private:
-  static constexpr int kPlanes = 3;
   Device& device_;
   const PlaneSet& planes_;
   Program apply_, view_;
-  GLuint frame_ = 0, rims_[kPlanes] = {};
+  GLuint frame_ = 0;
+  std::vector<Plane> rims_;
   uint64_t bytes_ = 0;
 };
 

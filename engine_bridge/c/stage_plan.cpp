@@ -19,12 +19,6 @@ Permutation lowPermutation(const Permutation& permutation) {
   return low;
 }
 
-std::vector<PlaneSpec> lowPlanes(const Permutation& permutation) {
-  std::vector<PlaneSpec> planes = planesOf(lowPermutation(permutation));
-  if (!permutation.scatters()) planes.push_back(nearestPlane());
-  return planes;
-}
-
 int listBlocks(const Permutation& p) {
   if (!p.exact()) return 0;
   const bool offsets = p.scatters() || p.rimsApart();

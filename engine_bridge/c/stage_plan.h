@@ -10,10 +10,9 @@ constexpr int kStages = 5;  // of pld_stage
 
 // Bits 1 << pld_stage.
 uint32_t stagesOf(const Permutation& permutation);
-// What a texel of PLD_STAGE_LOW keeps: nothing among its layers is solid or waits for its occlusion.
+// What a texel of PLD_STAGE_LOW keeps: nothing among its layers is solid or waits for its occlusion, and nearest depths
+// have a plane.
 Permutation lowPermutation(const Permutation& permutation);
-// Its planes; nearest depths are wanted besides.
-std::vector<PlaneSpec> lowPlanes(const Permutation& permutation);
 // How many storage blocks the lists of the exact tier take; 0 in other tiers.
 int listBlocks(const Permutation& permutation);
 

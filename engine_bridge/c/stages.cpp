@@ -1,7 +1,8 @@
 #include "engine_bridge/c/stages.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "shaders/plane_defines.h"
 
 namespace pellucid::c {
 namespace {
@@ -21,7 +22,7 @@ std::string Stages::build() {
   const Permutation& p = device_.permutation;
   std::string failure;
   if (device_.gl.onProcessor && p.tier == PLD_TIER_FLOAT)
-    failure = emptyPlanes_.build(device_.gl, "gl/empty_planes.frag", emptyDefines(c::planesOf(p)));
+    failure = emptyPlanes_.build(device_.gl, "gl/empty_planes.frag", emptyDefines(modelOf(p)));
   if (failure.empty() && p.planarDepth())
     failure = planarDepth_.build(device_.gl, "gl/planar_depth.frag", depthDefines(p.depth, device_.info.clip));
   return failure;
@@ -49,7 +50,18 @@ GLuint Stages::frameOf(pld_stage stage) const {
 }
 
 const std::vector<Plane>& Stages::planesOf(pld_stage stage) const {
-  return stage == PLD_STAGE_LOW ? low_.planes() : planes_.layers();
+  switch (stage) {
+    case PLD_STAGE_SOLIDS:
+      return planes_.solids();
+    case PLD_STAGE_FRONT:
+      return planes_.front();
+    case PLD_STAGE_RIMS:
+      return rims_.planes();
+    case PLD_STAGE_LOW:
+      return low_.planes();
+    default:
+      return planes_.layers();
+  }
 }
 
 // Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six, layers of low resolution
@@ -104,16 +116,10 @@ void Stages::drawEmptyPlanes(const pld_frame& frame) const {
 // The bound framebuffer's planes, empty.
 void Stages::clear() const {
   const GlFunctions& gl = device_.gl;
-  constexpr float far = std::numeric_limits<float>::infinity();
-  const GLfloat nowhere[4] = {far, far, far, far}, noSolid[4] = {0, 0, 0, far}, infinitelyFar = 0.0f;
-  if ((stage_ == PLD_STAGE_LAYERS && !emptyPlanes_.name) || stage_ == PLD_STAGE_LOW)
-    for (const Plane& plane : planesOf(stage_))
-      gl.ClearBufferfv(GL_COLOR, static_cast<GLint>(plane.spec.attachment), plane.spec.clear);
-  if (stage_ == PLD_STAGE_FRONT) gl.ClearBufferfv(GL_COLOR, 0, nowhere);
-  if (stage_ == PLD_STAGE_RIMS) rims_.clear();
+  const GLfloat infinitelyFar = 0.0f;
+  if (stage_ != PLD_STAGE_LAYERS || !emptyPlanes_.name) clearPlanes(gl, planesOf(stage_));
   if (stage_ == PLD_STAGE_SOLIDS) {
     gl.DepthMask(GL_TRUE);
-    gl.ClearBufferfv(GL_COLOR, 0, noSolid);
     gl.ClearBufferfv(GL_DEPTH, 0, &infinitelyFar);
   }
 }
@@ -123,10 +129,7 @@ void Stages::setBlends() const {
     room_.open();
     return;
   }
-  if (stage_ == PLD_STAGE_LAYERS || stage_ == PLD_STAGE_LOW)
-    for (const Plane& plane : planesOf(stage_)) setBlending(device_.gl, plane.spec.attachment, plane.spec.blend);
-  if (stage_ == PLD_STAGE_FRONT) setBlending(device_.gl, 0, BlendKind::minimum);
-  if (stage_ == PLD_STAGE_RIMS) rims_.setBlend();
+  if (stage_ != PLD_STAGE_SOLIDS) setBlending(device_.gl, planesOf(stage_));
 }
 
 // Solids test against each other, layers of low resolution in their seam, all else against the host's depth.

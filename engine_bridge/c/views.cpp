@@ -41,14 +41,14 @@ pld_status Views::check(const pld_target& target, const pld_frame& frame) {
 Units Views::units() const {
   const Permutation& p = device_.permutation;
   const bool views = p.rimsApart() && (device_.info.flags & PLD_FLAG_DEBUG_VIEWS);
-  return {0, p.scatters() || p.lowOver() || views ? 16 : 11};
+  return {0, p.scatters() || p.lowOver() || views ? kLookupUnits : kSpreadUnit};
 }
 
 void Views::bindPlanes(GLuint background) const {
-  device_.bind(0, background);
-  for (const Plane& plane : planes_.layers()) device_.bind(plane.spec.unit, plane.texture);
-  if (planes_.planarZ()) device_.bind(5, planes_.planarZ());
-  if (planes_.solid()) device_.bind(6, planes_.solid());
+  device_.bind(kBackgroundUnit, background);
+  c::bindPlanes(device_, planes_.layers());
+  if (planes_.planarZ()) device_.bind(kOpaqueZUnit, planes_.planarZ());
+  if (planes_.solid()) device_.bind(kSolidUnit, planes_.solid());
   low_.bindOver();
 }
 

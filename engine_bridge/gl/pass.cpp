@@ -8,7 +8,6 @@
 #include "engine_bridge/gl/lean_lists.h"
 #include "engine_bridge/gl/published_targets.h"
 #include "engine_bridge/gl/renderer.h"
-#include "engine_bridge/gl/rim_targets.h"
 #include "engine_bridge/gl/solid_hash.h"
 #include "engine_bridge/gl/transparent_pass.h"
 
@@ -45,38 +44,33 @@ struct TransparentPass::Impl {
 
 namespace {
 
-// Planes that a pixel has on the device, and what is not among them. The published targets are counted as PT17 table 2
-// does: without scattering, beta's fourth byte is there but holds nothing.
-void describe(const gl::Renderer& renderer, const PassSettings& settings, const gl::SumsLayout& layout,
+// Bits that a pixel has on the device, and what is not among them.
+void describe(const gl::Renderer& renderer, const PassSettings& settings, const LayerModel& layers,
               PassStatistics& statistics) {
-  const bool published = settings.tier == SumsTier::published;
-  statistics.bitsPerPixel = published ? 64 + 24 : layout.grey ? 2 * 128 + 64 + 32 : 4 * 128 + 32;
-  statistics.solidBits = renderer.hasSolids() ? 128 + 32 : 0;
+  statistics.bitsPerPixel = usedBits(layers);
+  statistics.solidBits = renderer.hasSolids() ? bitsOf(planesOf(layers, PlaneStage::solids)) + 32 : 0;  // and depth
   statistics.passes = renderer.hasSolids() ? 3 : 1;
   statistics.pruned.clear();
-  const auto plane = [&](bool kept, int bits, const char* name, const char* reason) {
-    if (kept)
-      statistics.bitsPerPixel += bits;
-    else
-      statistics.pruned.push_back(std::string(name) + ": " + reason);
+  const auto plane = [&](bool kept, const char* name, const char* reason) {
+    if (!kept) statistics.pruned.push_back(std::string(name) + ": " + reason);
   };
-  if (!published) {
-    plane(!layout.grey, 0, "coloured opacity", "no material transmits colour");
-    plane(layout.light, 128, "additive light", "no material adds light or transmits");
+  if (!layers.published()) {
+    plane(layers.coloured, "coloured opacity", "no material transmits colour");
+    plane(holds(layers, PlaneSum::light), "additive light", "no material adds light or transmits");
   }
-  plane(renderer.hasSolids(), 0, "solid pass", "no fragment can hide everything");
+  plane(renderer.hasSolids(), "solid pass", "no fragment can hide everything");
   // Read like the picture's own planes, not written.
-  plane(renderer.occludes(), 0, "inferred occlusion",
+  plane(renderer.occludes(), "inferred occlusion",
         renderer.wouldOcclude(settings) ? "switched off" : "no cut-out material, or no surroundings");
-  plane(layout.scatter, published ? 8 + 16 : 128 + 32, "scattering planes", "nothing refracts or diffuses");
+  plane(layers.scatters(), "scattering planes", "nothing refracts or diffuses");
   plane(
-      renderer.refracts(), 0, "refraction",
+      renderer.refracts(), "refraction",
       settings.scatter.refract == shading::PLD_REFRACT_OFF ? "switched off" : "no material transmits through a volume");
-  plane(layout.disperse, 128, "dispersion",
-        published                     ? "the published targets hold one offset for all channels"
+  plane(layers.disperses, "dispersion",
+        layers.published()            ? "the published targets hold one offset for all channels"
         : settings.scatter.dispersion ? "no refracting material disperses"
                                       : "switched off");
-  plane(renderer.diffuses(), 0, "diffusion",
+  plane(renderer.diffuses(), "diffusion",
         settings.scatter.k0 > 0.0f ? "no material has a collimation below 1" : "switched off");
 }
 
@@ -130,24 +124,21 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
     renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes);
     const std::vector<Window> scissors = renderer.tiles();
     tiles += scissors.size();
-    gl::SumsLayout layout;
-    layout.scatter = renderer.scatters();
-    layout.light = renderer.canAdd() || layout.scatter || !settings.scatter.prune;
-    layout.grey = renderer.grey();
-    layout.disperse = !published && renderer.disperses();
-    if (layout.scatter) addScatterPlanes(planes);
-    if (layout.disperse) addDispersionPlane(planes);
-    describe(renderer, settings, layout, impl_->statistics);
+    const LayerModel layers = renderer.layers();
+    if (layers.scatters()) addScatterPlanes(planes);
+    if (layers.disperses) addDispersionPlane(planes);
+    describe(renderer, settings, layers, impl_->statistics);
     if (published) {
       gl::PublishedTargets& targets = impl_->publishedTargets(part.width(), part.height());
-      targets.begin(layout.scatter);
+      targets.begin(planesOf(layers));
       renderer.draw(gl::Output::published, scissors);
       targets.read(planes, part.x0, part.y0, impl_->statistics.clamps);
     } else {
-      renderer.targets().beginSums(layout);
+      gl::PlaneTargets& targets = renderer.targets().planes();
+      targets.begin(planesOf(layers));
       renderer.draw(gl::Output::sums, scissors);
       if (settings.fog) impl_->fog.draw(*settings.fog, renderer.fogFrame(part));
-      renderer.targets().readSums(planes, part.x0, part.y0);
+      targets.read(planes, part.x0, part.y0);
     }
     if (renderer.hasSolids()) renderer.targets().readSolid(planes.solid, part.x0, part.y0);
   }
@@ -167,8 +158,8 @@ RimPlanes TransparentPass::rims(const PassSettings& settings) {
     renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes);
     if (!renderer.occludes()) return planes;
     if (planes.empty()) planes = RimPlanes(data.width(), data.height());
-    gl::RimTargets targets(part.width(), part.height());
-    targets.begin();
+    gl::PlaneTargets targets(part.width(), part.height());
+    targets.begin(planesOf(renderer.layers(), PlaneStage::rims));
     renderer.draw(gl::Output::rims, renderer.tiles());
     targets.read(planes, part.x0, part.y0);
   }

@@ -1,6 +1,7 @@
 #include "engine_bridge/gl/permutation.h"
 
 #include "engine_bridge/gl/blocks.h"
+#include "shaders/plane_defines.h"
 
 namespace pellucid::gl {
 
@@ -47,18 +48,37 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   return defines;
 }
 
-std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, int weight, int normalisation) {
+LayerModel layersOf(const FrameFeatures& frame, const SumsSettings& sums) {
+  LayerModel model;
+  model.tier = sums.tier == SumsTier::published ? PlaneTier::published : PlaneTier::float32;
+  model.weight = sums.weight.kind;
+  model.normalisation = sums.normalisation;
+  model.coloured = !frame.grey;
+  model.addsLight = frame.adds || !frame.prune;
+  model.refracts = frame.refracts;
+  model.diffuses = frame.diffuses;
+  model.disperses = frame.disperses && !model.published();
+  model.solids = frame.solids;
+  return model;
+}
+
+std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, const SumsSettings& sums) {
   std::vector<std::string> defines;
+  const auto write = [&](const char* name, SumsTier tier, PlaneStage stage) {
+    SumsSettings ofTier = sums;
+    ofTier.tier = tier;
+    defines = writeDefines(layersOf(frame, ofTier), stage);
+    defines.emplace_back(name);
+  };
   switch (output) {
     case Output::sums:
-      defines = {"OUTPUT_SUMS", "WEIGHT " + std::to_string(weight), "NORMALISATION " + std::to_string(normalisation)};
-      if (frame.grey) defines.emplace_back("GREY");
+      write("OUTPUT_SUMS", SumsTier::float32, PlaneStage::layers);
       break;
     case Output::published:
-      defines = {"OUTPUT_PUBLISHED", "WEIGHT " + std::to_string(weight)};
+      write("OUTPUT_PUBLISHED", SumsTier::published, PlaneStage::layers);
       break;
     case Output::rims:
-      defines = {"OUTPUT_RIMS", "WEIGHT " + std::to_string(weight), "NORMALISATION " + std::to_string(normalisation)};
+      write("OUTPUT_RIMS", SumsTier::float32, PlaneStage::rims);
       break;
     case Output::count:
       defines = {"OUTPUT_COUNT"};
@@ -81,7 +101,9 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
       defines = {"OUTPUT_ADD"};
       break;
     case Output::solid:
-      return {"OUTPUT_SOLID", "EXACT_COVERAGE"};
+      write("OUTPUT_SOLID", SumsTier::float32, PlaneStage::solids);
+      defines.emplace_back("EXACT_COVERAGE");
+      return defines;
   }
   const bool winners = output == Output::coverToWin || output == Output::claim || output == Output::addWon;
   if (winners) defines.emplace_back("WINNERS");
@@ -95,7 +117,7 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   if (frame.solids) defines.emplace_back("SOLIDS");
   const bool lists = output == Output::list || output == Output::leanList;
   if (frame.probes && (output == Output::count || lists)) defines.emplace_back("PROBES");
-  if (output == Output::count || output == Output::leanList || output == Output::rims) return defines;
+  if (output != Output::list) return defines;
   if (frame.scatters()) defines.emplace_back("SCATTER");
   if (frame.disperses) defines.emplace_back("DISPERSION");
   return defines;

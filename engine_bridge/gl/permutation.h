@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine_bridge/gl/transparent_pass.h"
+#include "shaders/plane_layout.h"
 
 namespace pellucid::gl {
 
@@ -49,6 +50,8 @@ struct FrameFeatures {
 //   infers  the material's rims take their occlusion from their neighbours (infersOcclusion)
 std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame,
                                         bool infers = false, bool points = false);
-std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, int weight, int normalisation);
+std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame, const SumsSettings& sums);
+// What the layers of such a frame are summed in.
+LayerModel layersOf(const FrameFeatures& frame, const SumsSettings& sums);
 
 }  // namespace pellucid::gl

@@ -336,7 +336,7 @@ const Program& Renderer::programFor(int primitive, Output output) {
   Shader& shader = shaders_[static_cast<std::size_t>(primitive)];
   const Program*& program = shader.programs[static_cast<std::size_t>(output)];
   if (!program) {
-    std::vector<std::string> defines = outputDefines(output, features_, settings_.weight.kind, settings_.normalisation);
+    std::vector<std::string> defines = outputDefines(output, features_, settings_);
     defines.insert(defines.end(), shader.surface.begin(), shader.surface.end());
     program = &programs_.get(kVertexStage, kFragmentStage, defines);
   }
@@ -395,7 +395,7 @@ void Renderer::draw(Output output, const std::vector<Window>& scissors) {
 FogFrame Renderer::fogFrame(const Window& superTile) const {
   const Window& data = gbuffer_->data;
   FogFrame frame;
-  frame.defines = outputDefines(Output::sums, features_, settings_.weight.kind, settings_.normalisation);
+  frame.defines = outputDefines(Output::sums, features_, settings_);
   frame.rays =
       pixelRays(camera_, gbuffer_->display, {data.x0 + superTile.x0, data.y0 + superTile.y0}, settings_.sample);
   return frame;

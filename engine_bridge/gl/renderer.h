@@ -41,8 +41,8 @@ class Renderer {
   void setBand(const Window& band);
 
   Targets& targets() { return *targets_; }
-  bool canAdd() const { return features_.adds; }
-  bool grey() const { return features_.grey; }
+  // What the layers are summed in, after begin().
+  LayerModel layers() const { return layersOf(features_, settings_); }
   bool hasSolids() const { return features_.solids; }
   bool scatters() const { return features_.scatters(); }
   bool refracts() const { return features_.refracts; }

@@ -4,10 +4,11 @@
 
 #include "engine_bridge/gl/blocks.h"
 #include "engine_bridge/gl/fences.h"
+#include "engine_bridge/gl/plane_targets.h"
 #include "engine_bridge/gl/program.h"
-#include "engine_bridge/gl/targets.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/errors.h"
+#include "shaders/plane_defines.h"
 
 namespace pellucid {
 
@@ -60,28 +61,22 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   gl::checkGl("uploading fragments to replay");
 
   const bool scatters = anyScatters(lists);
-  std::vector<std::string> defines{"WEIGHT " + std::to_string(weight.kind),
-                                   "NORMALISATION " + std::to_string(normalisation)};
-  if (scatters) {
-    defines.emplace_back("SCATTER");
-    addScatterPlanes(planes);
-  }
+  if (scatters) addScatterPlanes(planes);
   const gl::Buffer dispersionBuffer = gl::Buffer::make();
   if (lists.disperses()) {
-    defines.emplace_back("DISPERSION");
     addDispersionPlane(planes);
     fill(dispersionBuffer, lists.dispersion);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, dispersionBuffer.name());
   }
-  const gl::Program program = gl::buildProgram("gl/fullscreen.vert", "gl/replay.frag", defines);
+  const gl::Program program = gl::buildProgram("gl/fullscreen.vert", "gl/replay.frag", writeDefines(modelOf(planes)));
   const gl::VertexArray noVertices = gl::VertexArray::make();
-  gl::Targets targets(width, height);
+  gl::PlaneTargets targets(width, height);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glViewport(0, 0, width, height);
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-  targets.beginSums({true, scatters, false, lists.disperses()});
+  targets.begin(planesOf(modelOf(planes)));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, fragmentBuffer.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, offsetBuffer.name());
@@ -92,7 +87,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
   gl::fences().mark();
-  targets.readSums(planes, 0, 0);
+  targets.read(planes, 0, 0);
   glUseProgram(0);
   return planes;
 }

@@ -9,26 +9,77 @@
 #include <vector>
 
 #include "engine_bridge/gl/fences.h"
+#include "engine_bridge/gl/plane_formats.h"
 #include "engine_bridge/gl/program.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/plane_values.h"
+#include "shaders/plane_defines.h"
 #include "shaders/spread_pyramid.h"
 
 namespace pellucid {
 namespace {
 
-constexpr int kSpreadTextures = 5, kOutputs = 3;
-constexpr GLuint kFirstSpreadUnit = 11;
+constexpr int kOutputs = 3;
 
-template <class T>
-gl::Texture upload(const Image<T>& plane, GLenum stored, GLenum format) {
+gl::Texture upload(const void* texels, int width, int height, GLenum stored, GLenum format) {
   gl::Texture texture = gl::Texture::make();
-  glTextureStorage2D(texture.name(), 1, stored, plane.width(), plane.height());
+  glTextureStorage2D(texture.name(), 1, stored, width, height);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  glTextureSubImage2D(texture.name(), 0, 0, 0, plane.width(), plane.height(), format, GL_FLOAT, plane.data());
+  glTextureSubImage2D(texture.name(), 0, 0, 0, width, height, format, GL_FLOAT, texels);
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   return texture;
+}
+
+template <class T>
+gl::Texture upload(const Image<T>& plane, GLenum stored, GLenum format) {
+  return upload(plane.data(), plane.width(), plane.height(), stored, format);
+}
+
+// Its components side by side, as memory may not have them.
+gl::Texture uploadPlane(const OitPlanes& planes, const PlaneSpec& plane) {
+  const auto components = static_cast<std::size_t>(plane.components());
+  Image<float> texels(planes.data.width() * plane.components(), planes.data.height());
+  for (std::size_t c = 0; c < components; ++c) {
+    const ConstPlaneValues values = valuesOf(planes, plane.sum, static_cast<int>(c));
+    for (std::size_t i = 0; i < planes.radiance.size(); ++i) texels[components * i + c] = values[i];
+  }
+  return upload(texels.data(), planes.data.width(), planes.data.height(), gl::formatOf(plane.format),
+                gl::channelsOf(plane.components()));
+}
+
+// Null for sums that a resolve does not read.
+template <class Textures>
+auto nameOf(Textures& textures, PlaneSum sum) -> decltype(&textures.radiance) {
+  switch (sum) {
+    case PlaneSum::radiance:
+      return &textures.radiance;
+    case PlaneSum::weight:
+      return &textures.weight;
+    case PlaneSum::opacity:
+      return &textures.opacity;
+    case PlaneSum::depth:
+      return &textures.depth;
+    case PlaneSum::light:
+      return &textures.light;
+    case PlaneSum::refraction:
+      return &textures.refraction;
+    case PlaneSum::dispersion:
+      return &textures.dispersion;
+    case PlaneSum::nearestZ:
+      return &textures.nearestZ;
+    default:
+      return nullptr;
+  }
+}
+
+LayerModel layersOf(const ResolveTextures& textures) {
+  LayerModel layers;
+  layers.refracts = layers.diffuses = textures.refraction != 0;
+  layers.disperses = textures.dispersion != 0;
+  layers.solids = true;
+  return layers;
 }
 
 gl::Texture target(int width, int height) {
@@ -53,7 +104,7 @@ struct ResolvePass::Impl {
   gl::ProgramCache programs;
   gl::VertexArray noVertices = gl::VertexArray::make();
   gl::Framebuffer spreadFrame = gl::Framebuffer::make();
-  gl::Texture spread[kSpreadTextures];
+  gl::Texture spread[kSpreadPlanes];
   int atlasWidth = 0, atlasHeight = 0;
   std::vector<glm::ivec4> levels;  // as spreadLevels of shaders/gl/spread_texels.glsl
 
@@ -72,12 +123,12 @@ struct ResolvePass::Impl {
     if (spread[0] && wide <= atlasWidth && rows <= atlasHeight) return;
     atlasWidth = wide;
     atlasHeight = rows;
-    for (int i = 0; i < kSpreadTextures; ++i) {
+    for (int i = 0; i < kSpreadPlanes; ++i) {
       spread[i] = target(wide, rows);
       glNamedFramebufferTexture(spreadFrame.name(), GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), spread[i].name(), 0);
     }
     gl::checkGl("making the spread pyramid");
-    drawBuffers(spreadFrame.name(), kSpreadTextures);
+    drawBuffers(spreadFrame.name(), kSpreadPlanes);
   }
 
   const gl::Program& use(const char* stage, const std::vector<std::string>& defines) {
@@ -89,10 +140,10 @@ struct ResolvePass::Impl {
   }
 
   // A texel of one level reads those of the one below it, of the same textures: a barrier lies between the draws.
-  void drawSpread(int count) {
+  void drawSpread(int count, const std::vector<std::string>& defines) {
     if (count == 0) return;
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, spreadFrame.name());
-    const gl::Program& program = use("gl/spread_level.frag", {});
+    const gl::Program& program = use("gl/spread_level.frag", defines);
     const GLint level = glGetUniformLocation(program.name.name(), "level");
     glEnable(GL_SCISSOR_TEST);
     glViewport(0, 0, atlasWidth, atlasHeight);
@@ -118,17 +169,17 @@ void ResolvePass::draw(const ResolveTextures& textures, int width, int height, f
   const bool pyramid = textures.refraction && !settings.exact && settings.kernel == shading::PLD_DIFFUSE_GAUSSIAN;
   const int levels = pyramid ? shading::spreadLevel(shading::kernelSpread(largestVariance, largestSpread)) : 0;
   impl_->layOut(width, height, levels);
-  const GLuint units[] = {textures.background, textures.radiance, textures.weight,    textures.opacity,
-                          textures.depth,      textures.opaqueZ,  textures.solid,     textures.light,
-                          textures.refraction, textures.nearestZ, textures.dispersion};
-  for (GLuint unit = 0; unit < std::size(units); ++unit) {
-    glBindTextureUnit(unit, units[unit]);
-    glBindSampler(unit, 0);
-  }
-  for (GLuint i = 0; i < kSpreadTextures; ++i) {
-    glBindTextureUnit(kFirstSpreadUnit + i, impl_->spread[i].name());
-    glBindSampler(kFirstSpreadUnit + i, 0);
-  }
+  const auto bind = [](int unit, GLuint texture) {
+    glBindTextureUnit(static_cast<GLuint>(unit), texture);
+    glBindSampler(static_cast<GLuint>(unit), 0);
+  };
+  bind(kBackgroundUnit, textures.background);
+  bind(kOpaqueZUnit, textures.opaqueZ);
+  bind(kSolidUnit, textures.solid);
+  const LayerModel layers = layersOf(textures);
+  for (const PlaneSpec& plane : planesOf(layers))
+    if (const GLuint* texture = nameOf(textures, plane.sum)) bind(plane.unit, *texture);
+  for (int i = 0; i < kSpreadPlanes; ++i) bind(kSpreadUnit + i, impl_->spread[i].name());
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
@@ -136,12 +187,10 @@ void ResolvePass::draw(const ResolveTextures& textures, int width, int height, f
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
   glBindVertexArray(impl_->noVertices.name());
-  impl_->drawSpread(levels);
-
-  std::vector<std::string> defines;
-  if (textures.refraction) defines.emplace_back("SCATTER");
-  if (textures.dispersion) defines.emplace_back("DISPERSION");
+  std::vector<std::string> defines = readDefines(layers);
+  impl_->drawSpread(levels, defines);
   if (settings.published) defines.emplace_back("DECODED_PUBLISHED");
+
   const GLuint program = impl_->use("gl/resolve.frag", defines).name.name();
   glUniform1i(glGetUniformLocation(program, "modulateSelf"), settings.selfModulation ? 1 : 0);
   glUniform3i(glGetUniformLocation(program, "lookup"), settings.kernel, settings.exact ? 1 : 0, levels);
@@ -168,24 +217,14 @@ DeviceVeil ResolvePass::resolve(const OitPlanes& planes, const GBuffer& backgrou
     return kept.back().name();
   };
   ResolveTextures textures;
-  textures.radiance = keep(upload(planes.radiance, GL_RGBA32F, GL_RGBA));
-  textures.weight = keep(upload(planes.weight, GL_RGBA32F, GL_RGBA));
-  textures.opacity = keep(upload(planes.opacity, GL_RGBA32F, GL_RGBA));
-  textures.depth = keep(upload(planes.depth, GL_RGBA32F, GL_RGBA));
-  textures.light = keep(upload(planes.light, GL_RGBA32F, GL_RGBA));
+  for (const PlaneSpec& plane : planesOf(modelOf(planes)))
+    if (GLuint* texture = nameOf(textures, plane.sum)) *texture = keep(uploadPlane(planes, plane));
   textures.solid = keep(upload(planes.solid, GL_RGBA32F, GL_RGBA));
   textures.background = keep(upload(background.beauty, GL_RGBA32F, GL_RGBA));
   textures.opaqueZ = keep(upload(background.viewZ, GL_R32F, GL_RED));
   float largestVariance = 0.0f;
-  if (planes.scatters()) {
-    textures.refraction = keep(upload(planes.refraction, GL_RGBA32F, GL_RGBA));
-    Image<glm::vec2> nearest(width, height);
-    for (std::size_t i = 0; i < nearest.size(); ++i) nearest[i] = {planes.frontZ[i], planes.diffuseZ[i]};
-    textures.nearestZ = keep(upload(nearest, GL_RG32F, GL_RG));
-    for (std::size_t i = 0; i < planes.refraction.size(); ++i)
-      largestVariance = std::max(largestVariance, planes.refraction[i].w);
-  }
-  if (planes.disperses()) textures.dispersion = keep(upload(planes.dispersion, GL_RGBA32F, GL_RGBA));
+  for (std::size_t i = 0; i < planes.refraction.size(); ++i)
+    largestVariance = std::max(largestVariance, planes.refraction[i].w);
 
   const gl::Framebuffer frame = gl::Framebuffer::make();
   GLuint outputs[kOutputs];

@@ -254,7 +254,7 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
     if (samples.stratified) glBindTextureUnit(kRankUnit, self.ranks.name());
     glBindSampler(kRankUnit, 0);
 
-    const int channels = self.renderer.grey() ? 1 : 3;
+    const int channels = self.renderer.layers().coloured ? 3 : 1;
     const std::size_t row =
         static_cast<std::size_t>(part.width()) * static_cast<std::size_t>(channels) * count * sizeof(std::uint32_t);
     const int rows = rowsAtOnce(row);

@@ -10,11 +10,6 @@ namespace pellucid::gl {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Attachments: 0 to 4 the sums, of which 4 is light; 5 frontZ, and beside it diffuseZ where layers scatter, since there
-// are but eight; 6 refraction; 7 dispersion.
-constexpr GLuint kLight = 4, kFrontZ = 5, kRefraction = 6, kDispersion = 7;
-constexpr GLuint kAttachments = 8, kDepthOfGrey = 2;
-
 void requireComplete(const Framebuffer& framebuffer) {
   if (glCheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw std::logic_error("a framebuffer of the transparent pass is incomplete");
@@ -38,57 +33,6 @@ Texture Targets::add(GLenum format) const {
   Texture texture = Texture::make();
   glTextureStorage2D(texture.name(), 1, format, width_, height_);
   return texture;
-}
-
-// Attaches a texture, made when it is first needed; planes that a layout lacks take no memory.
-void Targets::attach(GLuint attachment, Texture& texture, GLenum format) {
-  if (!texture) texture = add(format);
-  glNamedFramebufferTexture(sumsFrame_.name(), GL_COLOR_ATTACHMENT0 + attachment, texture.name(), 0);
-}
-
-Targets::Targets(int width, int height) : width_(width), height_(height), sumsFrame_(Framebuffer::make()) {
-  attach(0, sums_[0], GL_RGBA32F);
-  attach(1, sums_[1], GL_RGBA32F);
-  attach(kFrontZ, frontZ_, GL_R32F);
-  checkGl("making the targets of the transparent pass");
-  requireComplete(sumsFrame_);
-}
-
-// Clearing obeys the scissor; draws set theirs.
-void Targets::beginSums(const SumsLayout& layout) {
-  layout_ = layout;
-  const GLuint frame = sumsFrame_.name();
-  bool used[kAttachments] = {true, true, true, !layout.grey, layout.light, true, layout.scatter, layout.disperse};
-  if (layout.grey) {
-    attach(kDepthOfGrey, greyDepth_, GL_RG32F);
-  } else {
-    attach(2, sums_[2], GL_RGBA32F);
-    attach(3, sums_[3], GL_RGBA32F);
-  }
-  if (layout.light) attach(kLight, sums_[kLight], GL_RGBA32F);
-  if (layout.scatter) {
-    attach(kRefraction, refraction_, GL_RGBA32F);
-    attach(kFrontZ, nearestZ_, GL_RG32F);
-  } else {
-    attach(kFrontZ, frontZ_, GL_R32F);
-  }
-  if (layout.disperse) attach(kDispersion, dispersion_, GL_RGBA32F);
-  checkGl("making the targets of the transparent pass");
-  requireComplete(sumsFrame_);
-  glDisable(GL_SCISSOR_TEST);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
-  GLenum attachments[kAttachments];
-  for (GLuint i = 0; i < kAttachments; ++i) attachments[i] = used[i] ? GL_COLOR_ATTACHMENT0 + i : GL_NONE;
-  glNamedFramebufferDrawBuffers(frame, kAttachments, attachments);
-  const float zero[4] = {0, 0, 0, 0};
-  const float far[4] = {kInfinity, kInfinity, 0, 0};
-  glEnable(GL_BLEND);
-  for (GLuint i = 0; i < kAttachments; ++i) {
-    const bool nearest = i == kFrontZ;
-    if (used[i]) glClearNamedFramebufferfv(frame, GL_COLOR, static_cast<GLint>(i), nearest ? far : zero);
-    glBlendFunci(i, GL_ONE, GL_ONE);
-    glBlendEquationi(i, nearest ? GL_MIN : GL_FUNC_ADD);
-  }
 }
 
 void Targets::beginCount() {
@@ -154,51 +98,6 @@ void Targets::beginNothing() {
 
 void Targets::bindSolid() const {
   glBindTextureUnit(6, solid_.name());
-}
-
-void Targets::readSums(OitPlanes& planes, int x, int y) const {
-  Image<glm::vec4>* images[] = {&planes.radiance, &planes.weight, &planes.opacity, &planes.depth, &planes.light};
-  for (std::size_t i = 0; i < 5; ++i)
-    if (i == kLight ? layout_.light : !layout_.grey)
-      readInto(sums_[i], GL_RGBA, width_, height_, &images[i]->at(x, y), images[i]->width());
-  if (layout_.grey) readGrey(planes, x, y);
-  if (!layout_.scatter) {
-    readInto(frontZ_, GL_RED, width_, height_, &planes.frontZ.at(x, y), planes.frontZ.width());
-  } else {
-    readInto(refraction_, GL_RGBA, width_, height_, &planes.refraction.at(x, y), planes.refraction.width());
-    Image<glm::vec2> nearest(width_, height_);
-    readInto(nearestZ_, GL_RG, width_, height_, nearest.data(), width_);
-    for (int row = 0; row < height_; ++row)
-      for (int column = 0; column < width_; ++column) {
-        planes.frontZ.at(x + column, y + row) = nearest.at(column, row).x;
-        planes.diffuseZ.at(x + column, y + row) = nearest.at(column, row).y;
-      }
-  }
-  if (layout_.disperse)
-    readInto(dispersion_, GL_RGBA, width_, height_, &planes.dispersion.at(x, y), planes.dispersion.width());
-  checkGl("reading the planes back");
-}
-
-// After light.
-void Targets::readGrey(OitPlanes& planes, int x, int y) const {
-  Image<glm::vec4> radiance(width_, height_), opacity(width_, height_);
-  Image<glm::vec2> depth(width_, height_);
-  readInto(sums_[0], GL_RGBA, width_, height_, radiance.data(), width_);
-  readInto(sums_[1], GL_RGBA, width_, height_, opacity.data(), width_);
-  readInto(greyDepth_, GL_RG, width_, height_, depth.data(), width_);
-  for (int row = 0; row < height_; ++row)
-    for (int column = 0; column < width_; ++column) {
-      shading::GreyTargets grey;
-      grey.radiance = radiance.at(column, row);
-      grey.opacity = opacity.at(column, row);
-      grey.depth = depth.at(column, row);
-      const int px = x + column, py = y + row;
-      const shading::OitTargets sums = shading::unpackGrey(grey, planes.light.at(px, py));
-      planes.radiance.at(px, py) = sums.radiance;
-      planes.weight.at(px, py) = sums.weight;
-      planes.opacity.at(px, py) = sums.opacity;
-      planes.depth.at(px, py) = sums.depth;
-    }
 }
 
 void Targets::readSolid(Image<glm::vec4>& solid, int x, int y) const {

@@ -1,7 +1,7 @@
 // The render targets of one super-tile, and their way back into planes. GL's row 0 is the top row here: the clip
 // origin is the upper left.
 #pragma once
-#include "engine_bridge/gl/gl_objects.h"
+#include "engine_bridge/gl/plane_targets.h"
 #include "engine_bridge/gl/transparent_pass.h"
 
 namespace pellucid::gl {
@@ -10,24 +10,15 @@ namespace pellucid::gl {
 // window is drawn as super-tiles at multiples of it, the same on every device and whatever the flags.
 constexpr int kSuperTile = 8192;
 
-// Which planes take part, and how they lie; see shaders/gl/sums_output.glsl.
-struct SumsLayout {
-  bool light = true;      // plane E; without it, it stays 0
-  bool scatter = false;   // refraction and diffusion
-  bool grey = false;      // one opacity for all channels
-  bool disperse = false;  // refraction per channel
-};
-
 class Targets {
  public:
-  // Throws ResourceError when the device has no room.
-  Targets(int width, int height);
+  Targets(int width, int height) : width_(width), height_(height), planes_(width, height) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Each binds and clears its framebuffer and sets blending, so that the next draws add up.
-  void beginSums(const SumsLayout& layout);
+  PlaneTargets& planes() { return planes_; }
+  // Binds and clears its framebuffer and sets blending, so that the next draws add up.
   void beginCount();
   // First the depth of the nearest solid, then per channel the largest radiance among those at that depth.
   void beginSolidDepth();
@@ -35,8 +26,7 @@ class Targets {
   void beginNothing();  // draws leave no pixels, only buffers
 
   void bindSolid() const;  // to texture unit 6; after beginSolidDepth()
-  // Into the planes as beginSums() laid them out, the targets' top left pixel at (x, y).
-  void readSums(OitPlanes& planes, int x, int y) const;
+  // Into planes in memory, the targets' top left pixel at (x, y).
   void readSolid(Image<glm::vec4>& solid, int x, int y) const;
   // After beginSolidDepth() and its draws: planar metres, +inf for none.
   void readSolidDepth(Image<float>& z, int x, int y) const;
@@ -44,12 +34,10 @@ class Targets {
 
  private:
   Texture add(GLenum format) const;
-  void attach(GLuint attachment, Texture& texture, GLenum format);
-  void readGrey(OitPlanes& planes, int x, int y) const;
   int width_, height_;
-  SumsLayout layout_;
-  Texture sums_[5], greyDepth_, frontZ_, refraction_, nearestZ_, dispersion_, solid_, solidDepth_, count_;
-  Framebuffer sumsFrame_, solidFrame_, countFrame_, emptyFrame_;
+  PlaneTargets planes_;
+  Texture solid_, solidDepth_, count_;
+  Framebuffer solidFrame_, countFrame_, emptyFrame_;
 };
 
 // `part` (in pixels of the plane) as an R32F texture that is read texel by texel.

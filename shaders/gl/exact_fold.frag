@@ -1,12 +1,10 @@
-// A pixel's list to its sums, whose bits do not know in which order the list is. What the list holds goes through the text
-// that writes the planes of the float tier, fragment by fragment; what it would blend is summed here.
+// Sums one pixel's list; the result has the same bits for every order of the list. What the list holds goes through the
+// text that writes the planes of the float tier, fragment by fragment; what it would blend is summed here.
 #include "gl/half.glsl"
 #include "shared/diffusion.glsl"
 #include "shared/resolve.glsl"  // as in gl/seam.glsl
-#if defined(STAGE_RIMS)
+#ifdef STAGE_RIMS
 #include "gl/rims_output.glsl"
-#elif defined(LEAN)
-#include "gl/lean_output.glsl"
 #else
 #include "gl/sums_output.glsl"
 #endif
@@ -18,26 +16,6 @@
 
 uniform int rowLength;
 uniform vec4 weight;  // range near, far in metres; exponent
-
-// Planes that add.
-#if defined(STAGE_RIMS)
-const int kPlanes = 3;
-#elif defined(LEAN) && defined(GREY)
-const int kSums = 2;
-#elif defined(LEAN)
-const int kSums = 3;
-#elif defined(GREY)
-const int kSums = 4;
-#else
-const int kSums = 5;
-#endif
-#if defined(FRONT_TAIL) || (defined(SCATTER) && defined(DISPERSION))
-const int kPlanes = kSums + 2;
-#elif defined(SCATTER)
-const int kPlanes = kSums + 1;
-#elif !defined(STAGE_RIMS)
-const int kPlanes = kSums;
-#endif
 
 // Puts this fragment's share of every plane into the outputs.
 //   frontZ  nearest of the pixel's list
@@ -73,160 +51,84 @@ void writeOne(uint place, float frontZ) {
 #endif
 }
 
-#ifdef DIFFUSE_IN_ALPHA
-// The nearest layer that diffuses, beside a sum.
-float diffuseZNow() {
-#ifdef LEAN
-  return depthSum.a;
-#else
-  return opacitySum.a;
-#endif
-}
-
-void setDiffuseZ(float z) {
-#ifdef LEAN
-  depthSum.a = z;
-#else
-  opacitySum.a = z;
-#endif
-}
-#endif
+vec4 asFour(vec4 x) { return x; }
+vec4 asFour(vec2 x) { return vec4(x, 0.0f, 0.0f); }
+vec4 asFour(float x) { return vec4(x, 0.0f, 0.0f, 0.0f); }
+#define PLANE_NOW(type, plane) planes[i++] = asFour(plane);
+#define SET_PLANE(type, plane) plane = type(planes[i++]);
 
 // What the outputs hold, of the planes that add.
-vec4[kPlanes] planesNow() {
-  vec4 planes[kPlanes];
+vec4[ADDED_PLANE_COUNT] planesNow() {
+  vec4 planes[ADDED_PLANE_COUNT];
   int i = 0;
-#if defined(STAGE_RIMS)
-  planes[i++] = averagedRim;
-  planes[i++] = addedRim;
-  planes[i++] = vec4(rimGradient, 0.0f, 0.0f);
-#else
-  planes[i++] = radianceSum;
-#if defined(GREY) && defined(LEAN) && defined(SCATTER)
-  planes[i++] = depthSum;
-#elif defined(GREY)
-  planes[i++] = vec4(depthSum, 0.0f, 0.0f);
-#else
-  planes[i++] = weightSum;
-  planes[i++] = depthSum;
-#endif
-#ifndef LEAN
-  planes[i++] = opacitySum;
-  planes[i++] = lightSum;
-#endif
-#ifdef FRONT_TAIL
-  planes[i++] = frontRadiance;
-#ifdef GREY
-  planes[i++] = vec4(frontDepth, 0.0f, 0.0f, 0.0f);
-#else
-  planes[i++] = frontDepth;
-#endif
-#endif
-#ifdef SCATTER
-  planes[i++] = refractionSum;
-#ifdef DISPERSION
-  planes[i++] = dispersionSum;
-#endif
-#endif
-#endif
+  ADDED_PLANES(PLANE_NOW)
   return planes;
 }
 
-void setPlanes(vec4 planes[kPlanes]) {
+void setPlanes(vec4 planes[ADDED_PLANE_COUNT]) {
   int i = 0;
-#if defined(STAGE_RIMS)
-  averagedRim = planes[i++];
-  addedRim = planes[i++];
-  rimGradient = planes[i++].xy;
-#else
-  radianceSum = planes[i++];
-#if defined(GREY) && defined(LEAN) && defined(SCATTER)
-  depthSum = planes[i++];
-#elif defined(GREY)
-  depthSum = planes[i++].xy;
-#else
-  weightSum = planes[i++];
-  depthSum = planes[i++];
-#endif
-#ifndef LEAN
-  opacitySum = planes[i++];
-  lightSum = planes[i++];
-#endif
-#ifdef FRONT_TAIL
-  frontRadiance = planes[i++];
-#ifdef GREY
-  frontDepth = planes[i++].x;
-#else
-  frontDepth = planes[i++];
-#endif
-#endif
-#ifdef SCATTER
-  refractionSum = planes[i++];
-#ifdef DISPERSION
-  dispersionSum = planes[i++];
-#endif
-#endif
-#endif
+  ADDED_PLANES(SET_PLANE)
 }
 
-// Planes that keep the nearest: of all layers, of those that diffuse.
+// Nearest depths: of all layers, of those that diffuse. 0 where they are not kept.
 vec2 nearestNow() {
-#if defined(DIFFUSE_IN_ALPHA)
-  return vec2(diffuseZNow());
-#elif defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
-  return vec2(0.0f);
-#elif defined(SCATTER)
-  return nearestZ;
-#else
-  return vec2(nearestZ);
+  vec2 nearest = vec2(0.0f);
+#ifdef NEAREST_Z
+  nearest.x = NEAREST_Z;
 #endif
+#ifdef DIFFUSE_Z
+  nearest.y = DIFFUSE_Z(PLANE_OUTPUT);
+#endif
+  return nearest;
 }
 
 void setNearest(vec2 nearest) {
-#if defined(DIFFUSE_IN_ALPHA)
-  setDiffuseZ(nearest.y);
-#elif defined(STAGE_RIMS) || defined(LEAN) || defined(NO_DIFFUSE)
-#elif defined(SCATTER)
-  nearestZ = nearest;
-#else
-  nearestZ = nearest.x;
+#ifdef NEAREST_Z
+  NEAREST_Z = nearest.x;
+#endif
+#ifdef DIFFUSE_Z
+  DIFFUSE_Z(PLANE_OUTPUT) = nearest.y;
+#endif
+}
+
+// Of a depth that lies beside a sum: it is none.
+void clearDiffuseZ() {
+#ifdef DIFFUSE_IN_ALPHA
+  DIFFUSE_Z(PLANE_OUTPUT) = 0.0f;
 #endif
 }
 
 void main() {
   const float kNowhere = intBitsToFloat(0x7f800000);
-  vec4 planes[kPlanes], largest[kPlanes];
-  for (int i = 0; i < kPlanes; ++i) planes[i] = largest[i] = vec4(0.0f);
+  vec4 planes[ADDED_PLANE_COUNT], largest[ADDED_PLANE_COUNT];
+  for (int i = 0; i < ADDED_PLANE_COUNT; ++i) planes[i] = largest[i] = vec4(0.0f);
   vec2 nearest = vec2(kNowhere);
   uint links = linkOf(0u) - 1u;
   uint first = pldLinks[headHere(uint(rowLength))];
   float frontZ = kNowhere;
 #ifdef FRONT_TAIL
-  for (uint next = first; next != 0u; next = pldLinks[links + next]) frontZ = min(frontZ, pldTransmissions[next - 1u].a);
+  for (uint next = first; next != 0u; next = pldLinks[links + next])
+    frontZ = min(frontZ, pldTransmissions[next - 1u].a);
 #endif
   uint count = 0u;
   for (uint next = first; next != 0u; next = pldLinks[links + next]) {
     writeOne(next - 1u, frontZ);
     nearest = min(nearest, nearestNow());
-#ifdef DIFFUSE_IN_ALPHA
-    setDiffuseZ(0.0f);  // no sum
-#endif
-    vec4 terms[kPlanes] = planesNow();
-    for (int i = 0; i < kPlanes; ++i) largest[i] = max(largest[i], abs(terms[i]));
+    clearDiffuseZ();
+    vec4 terms[ADDED_PLANE_COUNT] = planesNow();
+    for (int i = 0; i < ADDED_PLANE_COUNT; ++i) largest[i] = max(largest[i], abs(terms[i]));
     ++count;
   }
   if (count > 0u) {
-    ExactSums sums[kPlanes];
-    for (int i = 0; i < kPlanes; ++i) sums[i] = exactSums(largest[i], count);
+    ExactSums sums[ADDED_PLANE_COUNT];
+    for (int i = 0; i < ADDED_PLANE_COUNT; ++i) sums[i] = exactSums(largest[i], count);
     for (uint next = first; next != 0u; next = pldLinks[links + next]) {
       writeOne(next - 1u, frontZ);
-#ifdef DIFFUSE_IN_ALPHA
-      setDiffuseZ(0.0f);
-#endif
-      vec4 terms[kPlanes] = planesNow();
-      for (int i = 0; i < kPlanes; ++i) sums[i] = addedTo(sums[i], terms[i]);
+      clearDiffuseZ();
+      vec4 terms[ADDED_PLANE_COUNT] = planesNow();
+      for (int i = 0; i < ADDED_PLANE_COUNT; ++i) sums[i] = addedTo(sums[i], terms[i]);
     }
-    for (int i = 0; i < kPlanes; ++i) planes[i] = roundedSums(sums[i]);
+    for (int i = 0; i < ADDED_PLANE_COUNT; ++i) planes[i] = roundedSums(sums[i]);
   }
   setPlanes(planes);
   setNearest(nearest);

@@ -46,10 +46,6 @@ void main() {
   if (!(fog.share > 0.0f)) discard;
   writeOitSums(fogOitSums(fog, choices.x), fogZ(fog));
 #ifdef SCATTER
-  nearestZ.y = intBitsToFloat(0x7f800000);
-  refractionSum = vec4(0.0f);
-#endif
-#ifdef DISPERSION
-  dispersionSum = vec4(0.0f);
+  writeNoScatter();
 #endif
 }

@@ -1,12 +1,6 @@
 #pragma once
+// The nearest layer of a pixel, and what was drawn at low resolution and lies before it.
 #include "shared/front_tail.glsl"
-
-layout(binding = 8) uniform sampler2D frontRadiance;  // front and tail do not scatter: the places of those planes are free
-layout(binding = 10) uniform sampler2D frontDepth;
-#ifdef LOW_OVER
-layout(binding = 11) uniform sampler2D overRadiance;  // what was drawn at low resolution and lies before the nearest layer
-layout(binding = 12) uniform sampler2D overDepth;
-#endif
 
 FrontTargets frontOf(sampler2D radiance, sampler2D depth, ivec2 pixel) {
   FrontTargets targets;

@@ -1,5 +1,6 @@
 #pragma once
-// The light volume: the only place that fetches its texels. Includers define LIGHT_VOLUME_TEXELS, the texels of one light.
+// The light volume: the only place that fetches its texels. Includers define LIGHT_VOLUME_TEXELS, the texels of one
+// light.
 layout(binding = 13) uniform sampler3D lightVolume;  // lights above one another
 
 vec3 visibilityTexel(int light, ivec3 texel) {

@@ -1,6 +1,7 @@
 #pragma once
-// Appends a fragment to its pixel's list, at the pixel's cursor: the places that it owns are counted before or checked after.
-// Records are pairs of words: LeanFragment of gbuffer/lean_lists.h where LEAN, else Fragment of gbuffer/fragments.h.
+// Appends a fragment to its pixel's list, at the pixel's cursor: the places that it owns are counted before or checked
+// after. Records are pairs of words: LeanFragment of gbuffer/lean_lists.h where LEAN, else Fragment of
+// gbuffer/fragments.h.
 #include "gl/frame.glsl"
 #include "gl/identity.glsl"
 #include "shared/refraction.glsl"

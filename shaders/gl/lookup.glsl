@@ -1,8 +1,10 @@
 #pragma once
-// The textures that shared/gather.glsl looks things up in. Defines: NO_SOLIDS, PUBLISHED (the planes of that tier),
+// The textures that shared/gather.glsl looks things up in. Defines: those of the planes (shaders/plane_defines.h);
 // PART_OF_TEXTURE (the picture is a corner of its textures), NO_DEPTH (nothing is looked up elsewhere).
 #include "gl/spread_texels.glsl"
 #include "shared/resolve.glsl"  // here: what is first included inside of a condition is there under it alone
+
+PLANE_SAMPLERS
 #ifdef PUBLISHED
 #include "gl/published_sums.glsl"
 #endif
@@ -13,9 +15,6 @@ layout(binding = 5) uniform sampler2D opaqueZ;     // planar metres, +inf where 
 #endif
 #ifndef NO_SOLIDS
 layout(binding = 6) uniform sampler2D solid;       // nearest fragment that hides everything: rgb, planar z
-#endif
-#ifndef PUBLISHED
-layout(binding = 8) uniform sampler2D refraction;  // sums of W delta, W, s^2
 #endif
 #ifdef PART_OF_TEXTURE
 uniform ivec2 pictureSize;
@@ -41,10 +40,12 @@ vec4 solidAt(ivec2 pixel) {
 
 // Sums of W delta, W, s^2.
 vec4 pathSumsAt(ivec2 pixel) {
-#ifdef PUBLISHED
+#if defined(PUBLISHED)
   return publishedPath(publishedAt(pixel));
+#elif defined(SCATTER)
+  return texelFetch(refractionSum, pixel, 0);
 #else
-  return texelFetch(refraction, pixel, 0);
+  return vec4(0.0f);
 #endif
 }
 

@@ -1,5 +1,5 @@
-// One opaque fragment: what a G-buffer holds of it (OUTPUT_SURFACE), or what one light adds (OUTPUT_LIGHT). Fetch, shade
-// through the shared model, write.
+// One opaque fragment: what a G-buffer holds of it (OUTPUT_SURFACE), or what one light adds (OUTPUT_LIGHT). Fetch,
+// shade through the shared model, write.
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
 #include "gl/lights.glsl"

@@ -1,4 +1,5 @@
-// The host's depth to planar metres. Defines: DEPTH_IS_LINEAR, else CLIP_SCALE, CLIP_OFFSET and EMPTY of planarFromDevice().
+// The host's depth to planar metres. Defines: DEPTH_IS_LINEAR, else CLIP_SCALE, CLIP_OFFSET and EMPTY of
+// planarFromDevice().
 #include "shared/device_depth.glsl"
 
 layout(binding = 0) uniform sampler2D hostDepth;

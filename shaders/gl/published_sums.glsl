@@ -2,10 +2,6 @@
 // The targets of PT17 table 2, read back: what gbuffer/published.h does with them on the CPU.
 #include "shared/published.glsl"
 
-layout(binding = 1) uniform sampler2D radianceSum;
-layout(binding = 2) uniform sampler2D betaProduct;
-layout(binding = 8) uniform sampler2D deltaSum;
-
 // Drivers may multiply by a rounded 1/255: the steps themselves are exact.
 vec4 unormTexel(vec4 texel) {
   return vec4(fromUnorm(unormOf(texel.r)), fromUnorm(unormOf(texel.g)), fromUnorm(unormOf(texel.b)),

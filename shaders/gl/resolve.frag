@@ -2,7 +2,8 @@
 #include "shared/published.glsl"
 #include "gl/resolve_here.glsl"
 
-layout(location = 0) out vec4 light;         // of the layers, premultiplied; 0 untouched, 1 shows its own background, 2 another
+// Of the layers, premultiplied; alpha: 0 untouched, 1 shows its own background, 2 another.
+layout(location = 0) out vec4 light;
 layout(location = 1) out vec4 transmission;  // of the background
 layout(location = 2) out vec4 applied;       // transmission times another background; its mean times (1 - that alpha)
 

@@ -1,11 +1,9 @@
 #pragma once
-// Sums to what transparency does to a pixel: fetch and resolve through the shared model. Defines say how the sums lie:
-// GREY, LEAN, PUBLISHED, FRONT_TAIL, else one plane per sum; and which planes there are: NO_LIGHT, SCATTER, DISPERSION.
-// DECODED_PUBLISHED: planes of records in the published tier, whose 8 bits are decoded: depth holds beta.
-// NEAREST_SAMPLERS: textures are looked up at their nearest texels. LOW_OVER: of gl/front_sums.glsl; DIFFUSE_IN_ALPHA, NO_DIFFUSE: of
-// gl/sums_output.glsl.
+// Sums to what transparency does to a pixel: fetch and resolve through the shared model. Which planes there are and how
+// sums lie in them is said by the defines of shaders/plane_defines.h. NEAREST_SAMPLERS: textures are looked up at their
+// nearest texels. DECODED_PUBLISHED: planes of records in the published tier, whose 8 bits are decoded: depth holds beta.
 #include "gl/lookup.glsl"
-#include "shared/lean.glsl"
+#include "gl/packing.glsl"
 #include "shared/picture.glsl"
 
 // `pixel` is the one under this fragment.
@@ -18,15 +16,6 @@ vec4 texelHere(sampler2D plane, ivec2 pixel) {
 #endif
 }
 
-#ifndef PUBLISHED
-layout(binding = 1) uniform sampler2D radianceSum;
-layout(binding = 2) uniform sampler2D weightSum;
-layout(binding = 3) uniform sampler2D opacitySum;
-layout(binding = 4) uniform sampler2D depthSum;
-layout(binding = 7) uniform sampler2D lightSum;
-layout(binding = 9) uniform sampler2D nearestZ;  // g: of the layers that diffuse
-layout(binding = 10) uniform sampler2D dispersionSum;
-#endif
 #ifdef FRONT_TAIL
 #include "gl/front_sums.glsl"
 #endif
@@ -46,49 +35,16 @@ struct VeilHere {
   vec4 applied;       // 2: transmission times what is seen; its mean times (1 - that alpha)
 };
 
-#ifdef LEAN
-OitSums sumsAt(ivec2 pixel) {
-  LeanTargets targets;
-  targets.radiance = texelHere(radianceSum, pixel);
-  targets.depth = texelHere(depthSum, pixel);
-#ifdef GREY
-  targets.weight = vec4(0.0f);
-  return unpackLean(targets, true);
-#else
-  targets.weight = texelHere(weightSum, pixel);
-  return unpackLean(targets, false);
-#endif
-}
-#elif !defined(PUBLISHED)
-OitTargets targetsAt(ivec2 pixel) {
-#ifdef NO_LIGHT
-  vec4 light = vec4(0.0f);
-#else
-  vec4 light = texelHere(lightSum, pixel);
-#endif
-#ifdef GREY
-  GreyTargets grey;
-  grey.radiance = texelHere(radianceSum, pixel);
-  grey.opacity = texelHere(opacitySum, pixel);
-#ifdef DIFFUSE_IN_ALPHA
-  grey.opacity.a = grey.opacity.z;  // the count
-  grey.opacity.z = 0.0f;
-#endif
-  vec4 depth = texelHere(depthSum, pixel);
-  grey.depth = vec2(depth.x, depth.y);
-  return unpackGrey(grey, light);
-#else
-  OitTargets targets;
-  targets.radiance = texelHere(radianceSum, pixel);
-  targets.weight = texelHere(weightSum, pixel);
-  targets.opacity = texelHere(opacitySum, pixel);
-  targets.depth = texelHere(depthSum, pixel);
-  targets.light = light;
-  return targets;
-#endif
-}
+#ifndef PUBLISHED
+#define FETCH_SUM(type, plane, field) targets.field = texelHere(plane, pixel);
+#define TEXEL_HERE(plane) texelHere(plane, pixel)
 
-OitSums sumsAt(ivec2 pixel) { return unpackSums(targetsAt(pixel)); }
+OitSums sumsAt(ivec2 pixel) {
+  OitTargets targets;
+  targets.radiance = targets.weight = targets.opacity = targets.depth = targets.light = vec4(0.0f);
+  SUM_PLANES(FETCH_SUM)
+  return unpackHere(targets);
+}
 #endif
 
 VeilHere veilAt(ivec2 pixel) {
@@ -153,22 +109,11 @@ VeilHere veilAt(ivec2 pixel) {
 #ifdef PUBLISHED
   vec2 depths = vec2(0.0f);  // no depth says what stands in front
 #else
-#if defined(DIFFUSE_IN_ALPHA) && defined(LEAN)
-  float diffuseZ = texelHere(depthSum, pixel).a;
-#elif defined(DIFFUSE_IN_ALPHA)
-  float diffuseZ = texelHere(opacitySum, pixel).a;
-#elif defined(NO_DIFFUSE)
   float diffuseZ = intBitsToFloat(0x7f800000);
-#else
-  float diffuseZ = texelHere(nearestZ, pixel).g;
+#ifdef DIFFUSE_Z
+  diffuseZ = DIFFUSE_Z(TEXEL_HERE);
 #endif
-#if defined(LEAN) && defined(GREY)
-  float refractionZ = texelHere(depthSum, pixel).z;
-#elif defined(LEAN)
-  float refractionZ = texelHere(weightSum, pixel).a;
-#else
-  float refractionZ = texelHere(lightSum, pixel).a;
-#endif
+  float refractionZ = REFRACTION_Z(TEXEL_HERE);
   vec2 depths = vec2(refractionZ, diffuseZ);
 #endif
   vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel);

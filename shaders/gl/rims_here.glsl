@@ -1,6 +1,6 @@
 #pragma once
-// The rims of one pixel, and what the opaque pixels beside them hide. Whoever includes this declares the samplers averagedRims,
-// addedRims, rimGradients, opaqueZ, opaqueOpen, without NO_SOLIDS solid, and pictureSize.
+// The rims of one pixel, and what the opaque pixels beside them hide. Whoever includes this declares the samplers
+// averagedRim, addedRim, rimGradient (RIM_SAMPLERS), opaqueZ, opaqueOpen, without NO_SOLIDS solid, and pictureSize.
 uniform int form;
 
 ivec2 occludersSize() { return pictureSize; }
@@ -22,7 +22,7 @@ struct RimsHere {
 };
 
 RimsHere rimsAt(ivec2 pixel) {
-  vec4 averaged = texelFetch(averagedRims, pixel, 0), added = texelFetch(addedRims, pixel, 0);
+  vec4 averaged = texelFetch(averagedRim, pixel, 0), added = texelFetch(addedRim, pixel, 0);
   RimsHere rims;
   rims.any = averaged.a > 0.0f;
   rims.hidden = 0.0f;
@@ -30,7 +30,7 @@ RimsHere rimsAt(ivec2 pixel) {
   rims.added = vec3(0.0f);
   if (!rims.any) return rims;
   precise float z = added.a / averaged.a;
-  precise vec2 gradient = texelFetch(rimGradients, pixel, 0).rg / averaged.a;
+  precise vec2 gradient = texelFetch(rimGradient, pixel, 0).rg / averaged.a;
   precise float hidden = 1.0f - neighboursOcclusion(gradient, z, pixel, form);
   rims.hidden = hidden;
   rims.averaged = hidden * averaged.rgb;

@@ -3,9 +3,7 @@
 #include "shared/accumulate.glsl"
 #include "shared/material.glsl"
 
-layout(location = 0) out vec4 averagedRim;
-layout(location = 1) out vec4 addedRim;
-layout(location = 2) out vec2 rimGradient;
+PLANE_OUTPUTS
 
 //   around  what no occlusion leaves of the layer's radiance and full occlusion takes, premultiplied
 void writeRim(Layer layer, vec3 around, vec2 gradient, WeightSettings settings) {

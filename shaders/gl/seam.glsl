@@ -9,16 +9,12 @@
 #endif
 #if defined(EXACT)
 #include "gl/exact_output.glsl"
-#elif defined(STAGE_SOLIDS)
-layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
-#elif defined(STAGE_FRONT)
-layout(location = 0) out float frontZ;  // blended by MIN
+#elif defined(STAGE_SOLIDS) || defined(STAGE_FRONT)
+PLANE_OUTPUTS  // solidRadiance: rgb, planar z; frontZ
 #elif defined(STAGE_RIMS)
 #include "gl/rims_output.glsl"
 #elif defined(PUBLISHED)
 #include "gl/published_output.glsl"
-#elif defined(LEAN)
-#include "gl/lean_output.glsl"
 #else
 #include "gl/sums_output.glsl"
 #endif
@@ -125,6 +121,9 @@ WeightSettings seamWeight() {
   return settings;
 }
 
+// Of offsets in pairs: which way y runs.
+vec4 seamRows() { return vec4(1.0f, ROWS, 1.0f, ROWS); }
+
 // A layer in metres and pixels, for hosts that know its scattering already. What pldWriteFragment() ends in.
 //   offset      float pixels of the stage, y down; (0, 0) does not refract
 //   variance    s^2, pixels^2
@@ -171,8 +170,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   scatter.variance = 0.0f;
 #endif
 #if defined(EXACT)
-  appendLayer(layer, vec4(scatter.offset, scatter.variance, 0.0f), vec4(dispersion.x, dispersion.y * ROWS, dispersion.z, dispersion.w * ROWS),
-              uint(pldWeight.w));
+  appendLayer(layer, vec4(scatter.offset, scatter.variance, 0.0f), dispersion * seamRows(), uint(pldWeight.w));
 #elif defined(PUBLISHED)
   writePublished(layer, scatter, seamWeight());
 #else
@@ -182,7 +180,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   writeSums(layer, seamWeight());
 #endif
 #ifdef SCATTER
-  writeScatter(layer, scatter, vec4(dispersion.x, dispersion.y * ROWS, dispersion.z, dispersion.w * ROWS));
+  writeScatter(layer, scatter, dispersion * seamRows());
 #endif
 #ifdef HALF
   clampToHalf();
@@ -244,7 +242,8 @@ void pldWriteFragment(PldSurface surface) {
   settings.netCoverage = 0;
   settings.focalPixels = FOCAL_X;
   settings.orthographic = ORTHOGRAPHIC;
-  variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), clamp(surface.transmission, vec3(0.0f), vec3(1.0f)),
+  vec3 transmission = clamp(surface.transmission, vec3(0.0f), vec3(1.0f));
+  variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), transmission,
                            clamp(surface.collimation, 0.0f, 1.0f), z, seamBackdropZ());
 #endif
   pldWriteLayer(surface.radiance * EXPOSURE, surface.coverage, surface.transmission, z, offset, variance, dispersion);

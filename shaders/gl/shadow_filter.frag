@@ -1,5 +1,5 @@
-// Drawn shadow texels to those that are looked up, all channels at once. FILTER 0: as they are; 1: across; 2: down, what
-// 1 gave.
+// Drawn shadow texels to those that are looked up, all channels at once. FILTER 0: as they are; 1: across; 2: down,
+// what 1 gave.
 #include "shared/shadow_filter.glsl"
 
 layout(binding = 0) uniform sampler2D first;   // FILTER 0 and 1: nearest; 2: the first channel
@@ -34,7 +34,8 @@ vec4 texelHere(ivec2 at, int channel) {
   int edge = textureSize(first, 0)[FILTER - 1];
   for (int i = -PLD_SHADOW_TENT_REACH; i <= PLD_SHADOW_TENT_REACH; ++i) {
     int from = middle + i;
-    if (from >= 0 && from < edge) sum = addToTent(sum, i, texelAt(FILTER == 1 ? ivec2(from, at.y) : ivec2(at.x, from), channel));
+    ivec2 place = FILTER == 1 ? ivec2(from, at.y) : ivec2(at.x, from);
+    if (from >= 0 && from < edge) sum = addToTent(sum, i, texelAt(place, channel));
   }
   return sum;
 #endif

@@ -17,7 +17,8 @@ vec4 shadowTexel(int index) {
   int place = index / CHANNELS;
   int row = place / EDGE;
   int face = row / EDGE;
-  return texelFetch(pldShadowMaps, ivec3(place - row * EDGE, row - face * EDGE, face * CHANNELS + index - place * CHANNELS), 0);
+  int layer = face * CHANNELS + index - place * CHANNELS;
+  return texelFetch(pldShadowMaps, ivec3(place - row * EDGE, row - face * EDGE, layer), 0);
 }
 
 #include "shared/shadow_lookup.glsl"

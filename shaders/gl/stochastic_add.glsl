@@ -22,7 +22,8 @@ void addVisible(Layer layer, uint identity, ivec2 pixel) {
       uint nearest = sampleDepths[place];
       visible[c] += bits <= nearest ? 1.0f : 0.0f;
 #ifdef WINNERS
-      won[c] += bits == nearest && sampleOwners[place] == identity && coversSample(coin, o[c], covered, k) ? 1.0f : 0.0f;
+      bool owned = bits == nearest && sampleOwners[place] == identity;
+      won[c] += owned && coversSample(coin, o[c], covered, k) ? 1.0f : 0.0f;
 #endif
     }
   }
@@ -50,7 +51,9 @@ void addVisible(Layer layer, uint identity, ivec2 pixel) {
   float most = texelFetch(reachOf, pixel, 0).r;
   uint xi = hashOf(coin.key ^ 0x27d4eb2fu) >> 8u;
   float lightStep = sumStep(most, count), unitStep = sumStep(1.0f, count);
-  lightSteps = vec4(stepsOf(light.r, lightStep, xi), stepsOf(light.g, lightStep, xi), stepsOf(light.b, lightStep, xi), 0.0f);
+  lightSteps =
+      vec4(stepsOf(light.r, lightStep, xi), stepsOf(light.g, lightStep, xi), stepsOf(light.b, lightStep, xi), 0.0f);
   unitSteps = vec4(stepsOf(unit.r, unitStep, xi), stepsOf(unit.g, unitStep, xi), stepsOf(unit.b, unitStep, xi), 0.0f);
-  addedSteps = vec4(stepsOf(added.r, lightStep, xi), stepsOf(added.g, lightStep, xi), stepsOf(added.b, lightStep, xi), 0.0f);
+  addedSteps =
+      vec4(stepsOf(added.r, lightStep, xi), stepsOf(added.g, lightStep, xi), stepsOf(added.b, lightStep, xi), 0.0f);
 }

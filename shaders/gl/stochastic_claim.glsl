@@ -1,5 +1,6 @@
 #pragma once
-// Between the passes, where only winners count: of the fragments at a sample's nearest depth, the least identity owns it.
+// Between the passes, where only winners count: of the fragments at a sample's nearest depth, the least identity owns
+// it.
 #include "gl/stochastic_frame.glsl"
 
 void claimSamples(Layer layer, uint identity, ivec2 pixel) {

@@ -46,8 +46,8 @@ layout(location = 0) out float fragmentCount;
 #include "gl/stochastic_add.glsl"
 #endif
 #else
-layout(location = 0) out vec4 solidRadiance;  // rgb, planar z
-const float kClipNear = 1e-7f;                // as in gbuffer/camera.h
+PLANE_OUTPUTS                   // solidRadiance: rgb, planar z
+const float kClipNear = 1e-7f;  // as in gbuffer/camera.h
 #endif
 
 void main() {

@@ -10,14 +10,11 @@ layout(binding = 1) uniform sampler2D opacityTexels;
 layout(binding = 2) uniform sampler2D depthTexels;
 layout(binding = 3) uniform sampler2D opaqueZ;
 layout(binding = 4) uniform sampler2D solid;
-#ifdef SCATTER
-layout(binding = 5) uniform sampler2D refractionTexels;  // the texels' sums, as shaders/gl/sums_output.glsl writes them
-layout(binding = 6) uniform sampler2D lightTexels;
-layout(binding = 7) uniform sampler2D nearestTexels;
-layout(binding = 8) uniform sampler2D dispersionTexels;
-#endif
 #ifdef FRONT_TAIL
 layout(binding = 5) uniform sampler2D frontZ;  // nearest layer of the whole resolution, +inf for none
+#endif
+#ifdef SCATTER
+TEXEL_SAMPLERS  // the texels' sums, as shaders/gl/sums_output.glsl writes them
 #endif
 
 uniform ivec2 texelCount;
@@ -25,34 +22,30 @@ uniform float texelsAPixel;  // 1 over the factor
 #ifdef SCATTER
 uniform float factor;
 
-// Of the texels around, by their shares.
-vec4 refractionAround = vec4(0.0f), dispersionAround = vec4(0.0f);
+// Of the texels around, by their shares. Macros are one line each: below GLSL 4.20 none may go on.
+#define AROUND(plane, texels, around, scale) vec4 around = vec4(0.0f);
+SCATTER_PLANES(AROUND)
 float refractionZAround = 0.0f, diffuseZAround = intBitsToFloat(0x7f800000);
 
+vec4 withShare(vec4 around, float share, vec4 texel) {
+  precise vec4 sum = around + share * texel;
+  return sum;
+}
+#define ADD_TEXEL(plane, texels, around, scale) around = withShare(around, share, texelFetch(texels, at, 0));
 void scatterTexel(ivec2 at, float share) {
-  precise vec4 refraction = refractionAround + share * texelFetch(refractionTexels, at, 0);
-  precise float z = refractionZAround + share * texelFetch(lightTexels, at, 0).a;
-  refractionAround = refraction;
+  SCATTER_PLANES(ADD_TEXEL)
+  precise float z = refractionZAround + share * texelFetch(lightSumTexels, at, 0).a;
   refractionZAround = z;
-#ifdef DISPERSION
-  precise vec4 dispersion = dispersionAround + share * texelFetch(dispersionTexels, at, 0);
-  dispersionAround = dispersion;
-#endif
-  if (share > 0.0f) diffuseZAround = min(diffuseZAround, texelFetch(nearestTexels, at, 0).g);
+  if (share > 0.0f) diffuseZAround = min(diffuseZAround, texelFetch(nearestZTexels, at, 0).g);
 }
 
 // Offsets and spreads of texels are in texels.
+#define WRITE_AROUND(plane, texels, around, scale) { precise vec4 sum = scale * (around / shares); plane = sum; }
 void writeScatterAround(float shares) {
-  precise vec4 mean = refractionAround / shares;
-  precise vec4 refraction = vec4(factor * mean.x, factor * mean.y, mean.z, factor * factor * mean.w);
+  SCATTER_PLANES(WRITE_AROUND)
   precise float z = refractionZAround / shares;
-  refractionSum = refraction;
-  lightSum.a = z;
-  writeDiffuseZ(mean.w > 0.0f ? diffuseZAround : intBitsToFloat(0x7f800000));
-#ifdef DISPERSION
-  precise vec4 dispersion = (factor / shares) * dispersionAround;
-  dispersionSum = dispersion;
-#endif
+  REFRACTION_Z(PLANE_OUTPUT) = z;
+  writeDiffuseZ(refractionSum.w > 0.0f ? diffuseZAround : intBitsToFloat(0x7f800000));
 }
 #endif
 
@@ -94,19 +87,21 @@ void main() {
   for (int j = first.y; j <= end.y; ++j)
     for (int i = first.x; i <= end.x; ++i) {
       vec4 depths = texelFetch(depthTexels, ivec2(i, j), 0);
-      sums = withTexel(sums, ivec2(i, j), depths, upsampleShare(vec2(float(i), float(j)) - place, opaque, depths.z), opaque);
+      float share = upsampleShare(vec2(float(i), float(j)) - place, opaque, depths.z);
+      sums = withTexel(sums, ivec2(i, j), depths, share, opaque);
     }
   float wide = wideWeight(sums.share);
   if (wide > 0.0f)
     for (int j = max(centre.y - PLD_UPSAMPLE_REACH, 0); j <= min(centre.y + PLD_UPSAMPLE_REACH, last.y); ++j)
       for (int i = max(centre.x - PLD_UPSAMPLE_REACH, 0); i <= min(centre.x + PLD_UPSAMPLE_REACH, last.x); ++i) {
         vec4 depths = texelFetch(depthTexels, ivec2(i, j), 0);
-        sums = withTexel(sums, ivec2(i, j), depths, wideShare(vec2(float(i), float(j)) - place, opaque, depths.z, wide), opaque);
+        float share = wideShare(vec2(float(i), float(j)) - place, opaque, depths.z, wide);
+        sums = withTexel(sums, ivec2(i, j), depths, share, opaque);
       }
   LowLayer layer = lowLayerOf(sums);
   bool bends = false;
 #ifdef SCATTER
-  bends = refractionAround.z > 0.0f || refractionAround.w > 0.0f;
+  bends = refractionSumAround.z > 0.0f || refractionSumAround.w > 0.0f;
 #endif
   if (!layer.shows && !bends) discard;
   OitSums added = lowLayerSums(layer, NORMALISATION);
@@ -114,13 +109,7 @@ void main() {
 #ifdef FRONT_TAIL
   // Before the nearest layer it lies over that; else it is one of the others.
   bool before = layer.layer.z < texelFetch(frontZ, pixel, 0).r;
-  FrontTargets over = packFront(layer.layer, added.depth);
-  frontRadiance = before ? over.radiance : vec4(0.0f);
-#ifdef GREY
-  frontDepth = before ? over.depth.r : 0.0f;
-#else
-  frontDepth = before ? over.depth : vec4(0.0f);
-#endif
+  writeFront(packFront(layer.layer, added.depth), before);
   if (before) writeNothing();
 #endif
 #ifdef SCATTER

@@ -28,7 +28,7 @@ void main() {
   count = sums.count * 0.0625f;
   mean = vec3(meanColour(sums.numerator.r, sums.denominator.r), meanColour(sums.numerator.g, sums.denominator.g),
               meanColour(sums.numerator.b, sums.denominator.b));
-#ifdef LEAN
+#ifdef AVERAGED_ONLY
   weight = sums.denominator / (vec3(1.0f) + sums.denominator);
 #else
   weight = weightOf(sums.denominator, sums.opacity);

@@ -15,5 +15,6 @@ void main() {
   picture = vec4(0.0f, 0.0f, 0.0f, 1.0f);
   if (view == 12) picture.rgb = texelFetch(radianceTexels, at, 0).rgb;
   if (view == 13) picture.rgb = vec3(1.0f) - texelFetch(opacityTexels, at, 0).rgb;
-  if (view == 14 && depths.w != 0.0f) picture.rgb = vec3(shownDepth(depths.x), shownDepth(depths.y), shownDepth(depths.z));
+  if (view == 14 && depths.w != 0.0f)
+    picture.rgb = vec3(shownDepth(depths.x), shownDepth(depths.y), shownDepth(depths.z));
 }

@@ -1,9 +1,7 @@
 // Rims as a picture, to look at. PLD_VIEW_RIM_* of pellucid.h
 #include "gl/resolve_here.glsl"
 
-layout(binding = 11) uniform sampler2D averagedRims;  // where the spread pyramid lies, which is not looked up
-layout(binding = 12) uniform sampler2D addedRims;
-layout(binding = 13) uniform sampler2D rimGradients;
+RIM_SAMPLERS  // where the spread pyramid lies, which is not looked up
 layout(binding = 14) uniform sampler2D opaqueOpen;
 
 layout(location = 0) out vec4 picture;
@@ -22,7 +20,7 @@ void main() {
     OitSums sums = sumsAt(pixel);
     vec3 left = resolveSums(sums, false).transparent;
     sums.numerator += rims.averaged;
-#ifndef NO_LIGHT
+#ifdef LIGHT_TARGET
     sums.light += rims.added;
 #endif
     picture.rgb = max(resolveSums(sums, false).transparent - left, vec3(0.0f));

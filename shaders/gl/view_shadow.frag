@@ -1,5 +1,6 @@
 // One face of a shadow map as a picture, texel by texel. PLD_VIEW_SHADOW_* of pellucid.h
-uniform sampler2DArray maps;  // as shared/shadow_map.glsl has texels: hidden, part with a caster, its depth, that squared
+// As shared/shadow_map.glsl has texels: hidden, part with a caster, its depth, that squared.
+uniform sampler2DArray maps;
 
 layout(location = 0) out vec4 picture;
 

@@ -53,7 +53,8 @@ void main() {
   vec3 tint = vec3(hash(17 * triangle), hash(19 * triangle), hash(23 * triangle));
   bool solid = triangle % 17 == 0;
   if (solid) coverage = 1.0;
-  PldSurface surface = pldSurface(coverage * exp2(8.0 * tint.bgr - 4.0), coverage, solid ? vec3(0.0) : COLOUR(tint), viewPosition);
+  vec3 transmission = solid ? vec3(0.0) : COLOUR(tint);
+  PldSurface surface = pldSurface(coverage * exp2(8.0 * tint.bgr - 4.0), coverage, transmission, viewPosition);
   surface.normal = normalize(vec3(tint.xy - 0.5, 1.0));
   surface.eta = 1.0 / 1.5;
   surface.etaRedBlue = vec2(1.0 / 1.48, 1.0 / 1.52);
@@ -351,7 +352,9 @@ void main() {
 })",
                                      std::string("#version 450 core\n") + seam + kHash + R"(
 flat in int layer;
-void main() { pldWriteLayer(vec3(hash(layer)), 0.01, vec3(0.5), 1.0 + 8.0 * hash(layer + 7), vec2(1.0), 0.5, vec4(0.25)); })");
+void main() {
+  pldWriteLayer(vec3(hash(layer)), 0.01, vec3(0.5), 1.0 + 8.0 * hash(layer + 7), vec2(1.0), 0.5, vec4(0.25));
+})");
   ASSERT_NE(program, 0u);
   GLuint array = 0;
   glCreateVertexArrays(1, &array);

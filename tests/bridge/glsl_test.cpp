@@ -23,7 +23,8 @@ in vec3 viewPosition;
 void main() {
   Layer layer;
   layer.layer = vec4(meanOf(viewPosition));
-  PldSurface surface = pldSurface(radianceSum.rgb + layer.layer.rgb * SCATTER_GREY, 0.5, vec3(0.9, 0.5, 0.2), viewPosition);
+  vec3 radiance = radianceSum.rgb + layer.layer.rgb * SCATTER_GREY;
+  PldSurface surface = pldSurface(radiance, 0.5, vec3(0.9, 0.5, 0.2), viewPosition);
   surface.normal = normalize(-viewPosition);
   surface.eta = 1.0 / 1.5;
   surface.etaRedBlue = vec2(1.0 / 1.49, 1.0 / 1.51);

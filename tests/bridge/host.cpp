@@ -167,7 +167,9 @@ std::vector<float> Host::finish(pld_pass* pass) {
 
 void replay(pld_pass* pass, const FragmentLists& lists, const pld_frame& frame, const std::vector<pld_stage>& stages) {
   static const std::string kMain = R"(
-struct FragmentRecord { vec3 radiance; float coverage; vec3 transmission; float z; vec2 offset; float variance; uint identity; };
+struct FragmentRecord {
+  vec3 radiance; float coverage; vec3 transmission; float z; vec2 offset; float variance; uint identity;
+};
 layout(std430, binding = 3) readonly buffer Fragments { FragmentRecord fragments[]; };
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) readonly buffer Dispersions { vec4 dispersions[]; };

@@ -40,6 +40,13 @@ std::set<Defines> surfaces() {
   return found;
 }
 
+SumsSettings sumsOf(int weight, int normalisation) {
+  SumsSettings sums;
+  sums.weight.kind = weight;
+  sums.normalisation = normalisation;
+  return sums;
+}
+
 void build(const Defines& output, const Defines& surface) {
   Defines defines = output;
   defines.insert(defines.end(), surface.begin(), surface.end());
@@ -59,8 +66,8 @@ TEST(Permutations, EverySurfaceCompilesAndLinks) {
   for (const Defines& surface : all) {
     frame.solids = turn / gl::kOutputs % 2 == 1;
     frame.grey = turn / (2 * gl::kOutputs) % 2 == 1;
-    build(gl::outputDefines(static_cast<gl::Output>(turn % gl::kOutputs), frame, shading::PLD_WEIGHT_EQ5,
-                            turn / 8 % 2 ? 0 : 1),
+    build(gl::outputDefines(static_cast<gl::Output>(turn % gl::kOutputs), frame,
+                            sumsOf(shading::PLD_WEIGHT_EQ5, turn / 8 % 2 ? 0 : 1)),
           surface);
     ++turn;
   }
@@ -83,7 +90,7 @@ TEST(Permutations, NormalAndSpecularTexturesAndEnvironmentsCompileAndLink) {
     frame.lights = bit(3);
     frame.refracts = frame.diffuses = bit(4);
     frame.prune = false;
-    build(gl::outputDefines(bit(3) ? gl::Output::list : gl::Output::sums, frame, shading::PLD_WEIGHT_EQ5, 0),
+    build(gl::outputDefines(bit(3) ? gl::Output::list : gl::Output::sums, frame, sumsOf(shading::PLD_WEIGHT_EQ5, 0)),
           gl::surfaceDefines(material, bit(0), frame));
   }
 }
@@ -100,10 +107,10 @@ TEST(Permutations, EveryOutputCompilesAndLinks) {
     for (const Material& material : {plain, glass}) {
       const Defines surface = gl::surfaceDefines(material, false, frame);
       for (const gl::Output output : {gl::Output::count, gl::Output::list, gl::Output::solid, gl::Output::published})
-        build(gl::outputDefines(output, frame, 0, 0), surface);
+        build(gl::outputDefines(output, frame, sumsOf(0, 0)), surface);
       for (int weight = 0; depthWeightOf(weight); ++weight)
         for (const int normalisation : {shading::PLD_NORMALISE_SPECTRAL, shading::PLD_NORMALISE_PUBLISHED})
-          build(gl::outputDefines(gl::Output::sums, frame, weight, normalisation), surface);
+          build(gl::outputDefines(gl::Output::sums, frame, sumsOf(weight, normalisation)), surface);
     }
   }
 }

@@ -76,8 +76,8 @@ TEST(Particle, EveryKindCompilesAndLinks) {
     frame.surroundings = bit(7);
     frame.environment = !bit(7);
     frame.solids = bit(2);
-    std::vector<std::string> defines = gl::outputDefines(static_cast<gl::Output>(bits % static_cast<int>(gl::kOutputs)),
-                                                         frame, shading::PLD_WEIGHT_EQ5, 0);
+    std::vector<std::string> defines =
+        gl::outputDefines(static_cast<gl::Output>(bits % static_cast<int>(gl::kOutputs)), frame, SumsSettings{});
     const std::vector<std::string> surface = gl::surfaceDefines(material, bit(5), frame, false, points);
     defines.insert(defines.end(), surface.begin(), surface.end());
     ASSERT_NO_THROW(gl::buildProgram("gl/transparent.vert", "gl/transparent.frag", defines)) << bits;

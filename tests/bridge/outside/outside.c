@@ -1,4 +1,5 @@
-/* A host that knows Pellucid from an installed prefix alone, in C: two panes over a grey wall, and what the picture must be. */
+/* A host that knows Pellucid from an installed prefix alone, in C: two panes over a grey wall, and what the picture
+ * must be. */
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #define GL_GLEXT_PROTOTYPES 1
@@ -120,7 +121,8 @@ int main(void) {
     /* beta b + (1 - beta) sum(C) / sum(o), by hand */
     const double beta = (double)panes[0][c] * (double)panes[1][c], o = 2.0 - (double)panes[0][c] - (double)panes[1][c];
     const double left = beta * 0.5 + (1.0 - beta) * 0.1 / o;
-    printf("channel %d: %.6f, expected %.6f; beside it %.6f\n", c, (double)texels[8][4][c], left, (double)texels[8][28][c]);
+    printf("channel %d: %.6f, expected %.6f; beside it %.6f\n", c, (double)texels[8][4][c], left,
+           (double)texels[8][28][c]);
     need(fabs((double)texels[8][4][c] - left) < 1e-6, "the panes are wrong");
     need(texels[8][28][c] == 0.5f, "the bare wall is wrong");
   }
