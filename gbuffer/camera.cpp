@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
+#include <optional>
 
 #include "gbuffer/errors.h"
 
@@ -46,33 +47,81 @@ double shear(const glm::dmat3& m) {
 
 struct Lens {
   bool orthographic = false;
-  glm::dvec2 scale{}, shift{};  // ndc01 = scale * (x, y) / z + shift
+  glm::dvec2 scale{}, shift{};  // ndc = scale * (x, y) / z + shift
+  double divisor = 0;           // of the projection: 1 or -1 in what renderers write
 };
 
 // ndcFromCamera must be one of
 //   perspective   (sx 0 cx 0) (0 sy cy 0) (any) (0 0 w 0)
 //   orthographic  (sx 0 0 cx) (0 sy 0 cy) (any) (0 0 0 w)
-// up to what float matrices lose, `slack`.
-Lens lensOf(const glm::dmat4& ndcFromCamera, double slack, const std::string& file) {
-  const auto contradicts = [&](const std::string& found) {
-    throw MeaningError(
-        fmt::format("{}: attributes worldToCamera and worldToNDC: found {}, expected one camera", file, found));
-  };
+// up to what float matrices lose, `slack`. Else `found` says what it is instead.
+std::optional<Lens> lensOf(const glm::dmat4& ndcFromCamera, double slack, std::string& found) {
   const glm::dvec4 x = glm::row(ndcFromCamera, 0), y = glm::row(ndcFromCamera, 1), w = glm::row(ndcFromCamera, 3);
   Lens lens;
   lens.orthographic = std::abs(w.w) > std::abs(w.z);
-  const double divisor = lens.orthographic ? w.w : w.z;
+  lens.divisor = lens.orthographic ? w.w : w.z;
   const double rest = std::max({std::abs(w.x), std::abs(w.y), std::abs(lens.orthographic ? w.z : w.w)});
   const double offAxis = std::max(
       {std::abs(x.y), std::abs(y.x), std::abs(lens.orthographic ? x.z : x.w), std::abs(lens.orthographic ? y.z : y.w)});
-  if (!(std::abs(divisor) > slack)) contradicts("no projection");
-  if (divisor < 0) contradicts("a projection that looks down -z");
-  if (rest > slack || offAxis > slack) contradicts("a projection that is not along worldToCamera's z axis");
-  lens.scale = glm::dvec2(x.x, y.y) / divisor;
-  lens.shift = glm::dvec2(lens.orthographic ? x.w : x.z, lens.orthographic ? y.w : y.z) / divisor;
-  if (!(lens.scale.x > 0)) contradicts("a mirrored picture");
-  if (lens.scale.y == 0) contradicts("a picture without height");
-  return lens;
+  if (!(std::abs(lens.divisor) > slack)) {
+    found = "no projection";
+  } else if (rest > slack || offAxis > slack) {
+    found = "a projection that is not along worldToCamera's z axis";
+  } else {
+    lens.scale = glm::dvec2(x.x, y.y) / lens.divisor;
+    lens.shift = glm::dvec2(lens.orthographic ? x.w : x.z, lens.orthographic ? y.w : y.z) / lens.divisor;
+    // Seen along -z, x over z changes its sign; the caller has turned such spaces round.
+    if (lens.divisor < 0 && !lens.orthographic)
+      found = "a projection that looks down -z";
+    else if (!(lens.scale.x > 0))
+      found = "a mirrored picture";
+    else if (lens.scale.y == 0)
+      found = "a picture without height";
+    else
+      return lens;
+  }
+  return std::nullopt;
+}
+
+// One way to read the two attributes.
+struct Reading {
+  glm::dmat4 cameraFromWorld{1.0};  // left-handed camera space, +z forward
+  Lens lens;
+  bool transposed = false, rightHanded = false;
+};
+
+// Nothing when the attributes, read that way, are no camera; `found` says what they are then.
+std::optional<Reading> readAs(const glm::dmat4& worldToCamera, const glm::dmat4& worldToNdc, bool transposed,
+                              std::string& found) {
+  Reading reading;
+  reading.transposed = transposed;
+  reading.cameraFromWorld = transposed ? glm::transpose(worldToCamera) : worldToCamera;
+  const glm::dmat4 ndcFromWorld = transposed ? glm::transpose(worldToNdc) : worldToNdc;
+  if (!isAffine(reading.cameraFromWorld)) {
+    found = "a projection";
+    return std::nullopt;
+  }
+  const glm::dmat3 rotation(reading.cameraFromWorld);
+  if (shear(rotation) > kOrthonormal) {
+    found = "scale or shear";
+    return std::nullopt;
+  }
+  reading.rightHanded = glm::determinant(rotation) > 0;
+  if (reading.rightHanded) reading.cameraFromWorld = kFlipZ * reading.cameraFromWorld;
+  // What products of floats lose: a few units in the last place of the largest terms that cancel.
+  const glm::dmat4 worldFromCamera = glm::inverse(reading.cameraFromWorld);
+  const double slack = 4.0 * 1.2e-7 * largest(ndcFromWorld) * std::max(1.0, largest(worldFromCamera));
+  const std::optional<Lens> lens = lensOf(ndcFromWorld * worldFromCamera, std::max(slack, 1e-6), found);
+  if (!lens) return std::nullopt;
+  reading.lens = *lens;
+  return reading;
+}
+
+// NDC runs from 0 to 1 by EXR's rule, and from -1 to 1 in some files. The principal point tells: there it lies near
+// (0, 0), which by EXR's rule is a corner of the picture.
+bool isWide(const Lens& lens) {
+  constexpr double kNearMiddle = 0.25;  // of the half picture
+  return std::max(std::abs(lens.shift.x), std::abs(lens.shift.y)) <= kNearMiddle;
 }
 
 }  // namespace
@@ -110,37 +159,35 @@ Projected project(const Camera& camera, const Window& display, glm::dvec3 world)
 }
 
 Camera cameraFromExr(const glm::dmat4& worldToCameraRows, const glm::dmat4& worldToNdcRows, const std::string& file) {
-  const auto contradicts = [&](const std::string& found, const std::string& expected) {
-    throw MeaningError(fmt::format("{}: attribute worldToCamera: found {}, expected {}", file, found, expected));
-  };
-  if (!allFinite(worldToCameraRows) || !allFinite(worldToNdcRows))
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
     throw MeaningError(
-        file + ": attributes worldToCamera and worldToNDC: found a number that is not finite, expected a camera");
-  // A GLM column holds what EXR calls a row, so as read they are the column-vector form. pbrt stores the transpose:
-  // then the translation stands where (0, 0, 0, 1) belongs.
-  glm::dmat4 cameraFromWorld = worldToCameraRows, ndcFromWorld = worldToNdcRows;
+        fmt::format("{}: attributes worldToCamera and worldToNDC: found {}, expected {}", file, found, expected));
+  };
+  if (!allFinite(worldToCameraRows) || !allFinite(worldToNdcRows)) refuse("a number that is not finite", "a camera");
+  // A GLM column holds what EXR calls a row, so as read they are the column-vector form. pbrt stores the transpose,
+  // which near the origin looks like a camera too: the better one has a projection that divides by z itself.
+  std::string found[2];
+  std::optional<Reading> best;
+  for (const bool transposed : {false, true}) {
+    const auto reading = readAs(worldToCameraRows, worldToNdcRows, transposed, found[transposed]);
+    const auto off = [](const Reading& one) { return std::abs(std::abs(one.lens.divisor) - 1.0); };
+    if (reading && (!best || off(*reading) < off(*best) - 1e-6)) best = reading;
+  }
+  if (!best)
+    refuse(found[0] == "a projection" ? found[1] : found[0], "a rotation, a translation and a projection along z");
+  const bool wide = isWide(best->lens);
   Camera camera;
   camera.origin = "attribute worldToCamera";
-  if (!isAffine(cameraFromWorld)) {
-    cameraFromWorld = glm::transpose(cameraFromWorld);
-    ndcFromWorld = glm::transpose(ndcFromWorld);
-    camera.origin += ", transposed";
-    if (!isAffine(cameraFromWorld)) contradicts("a projection", "a rotation and a translation");
-  }
-  const glm::dmat3 rotation(cameraFromWorld);
-  if (shear(rotation) > kOrthonormal) contradicts("scale or shear", "a rotation and a translation");
-  if (glm::determinant(rotation) > 0)
-    contradicts("no change of handedness", "left-handed camera space, +z forward, from a right-handed world");
-
-  // What products of floats lose: a few units in the last place of the largest terms that cancel.
-  const glm::dmat4 worldFromCamera = glm::inverse(cameraFromWorld);
-  const double slack = 4.0 * 1.2e-7 * largest(ndcFromWorld) * std::max(1.0, largest(worldFromCamera));
-  const Lens lens = lensOf(ndcFromWorld * worldFromCamera, std::max(slack, 1e-6), file);
-  camera.viewFromWorld = kFlipZ * cameraFromWorld;
-  camera.orthographic = lens.orthographic;
-  camera.focal = {2.0 * lens.scale.x, 2.0 * std::abs(lens.scale.y)};
-  camera.centre = {2.0 * lens.shift.x - 1.0, 1.0 - 2.0 * lens.shift.y};
-  if (lens.scale.y > 0) {  // NDC that grows upwards, as pbrt's
+  if (best->transposed) camera.origin += ", transposed";
+  if (best->rightHanded) camera.origin += ", right-handed";
+  if (wide) camera.origin += ", NDC from -1 to 1";
+  camera.viewFromWorld = kFlipZ * best->cameraFromWorld;
+  camera.orthographic = best->lens.orthographic;
+  const double toWide = wide ? 1.0 : 2.0;
+  const glm::dvec2 centre = toWide * best->lens.shift - (wide ? 0.0 : 1.0);
+  camera.focal = {toWide * best->lens.scale.x, toWide * std::abs(best->lens.scale.y)};
+  camera.centre = {centre.x, -centre.y};
+  if (best->lens.scale.y > 0) {  // NDC that grows upwards, as pbrt's
     camera.centre.y = -camera.centre.y;
     camera.origin += ", y up";
   }

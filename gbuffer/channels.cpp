@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gbuffer/errors.h"
+#include "gbuffer/producers.h"
 
 namespace pellucid {
 namespace {
@@ -197,16 +198,8 @@ std::string listNames(const std::vector<NamedChannel>& channels, std::size_t mos
   return channels.size() > most ? fmt::format("{} and {} more", text, channels.size() - most) : text;
 }
 
-bool isBlender(const ExrDocument& document) {
-  return std::any_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) {
-    return part.attributes.contains("BlenderMultiChannel") ||
-           std::any_of(part.attributes.begin(), part.attributes.end(),
-                       [](const auto& attribute) { return attribute.first.starts_with("cycles."); });
-  });
-}
-
 BeautyChannels resolveBeauty(const ExrDocument& document, const std::vector<NamedChannel>& channels,
-                             const std::string& layer, bool blender) {
+                             const std::string& layer, const std::string& view, const Producer* producer) {
   std::vector<BeautyChannels> layers = colourLayers(channels);
   if (!layer.empty()) {
     const auto named = [&](const BeautyChannels& candidate) {
@@ -237,16 +230,18 @@ BeautyChannels resolveBeauty(const ExrDocument& document, const std::vector<Name
     throw MeaningError(fmt::format("{}: no colour: found {}{}, expected R, G and B, or --beauty LAYER", document.path,
                                    deep ? "deep samples only: " : "", listNames(channels)));
   }
-  if (layers.size() > 1 && blender)
-    std::erase_if(layers, [](const BeautyChannels& candidate) {
-      return !candidate.layers.empty() && candidate.layers[0] == "composite";
+  if (layers.size() > 1 && producer && producer->givesWay)
+    std::erase_if(layers, [&](const BeautyChannels& candidate) {
+      return !candidate.layers.empty() && candidate.layers[0] == producer->givesWay;
     });
-  if (layers.size() > 1 && !document.views.empty())
-    std::erase_if(layers,
-                  [&](const BeautyChannels& candidate) { return !sameView(candidate.view, document.views[0]); });
+  const std::string wanted = !view.empty() ? view : document.views.empty() ? "" : document.views[0];
+  if (!view.empty() && std::find(document.views.begin(), document.views.end(), view) == document.views.end())
+    throw MeaningError(fmt::format("{}: --view: found {}, expected {}", document.path,
+                                   document.views.empty() ? "no views" : "views without that name", view));
+  if ((layers.size() > 1 && !document.views.empty()) || !view.empty())
+    std::erase_if(layers, [&](const BeautyChannels& candidate) { return !sameView(candidate.view, wanted); });
   if (layers.empty())
-    throw MeaningError(fmt::format("{}: no colour of view {}, expected one, or --beauty NAME", document.path,
-                                   document.views.empty() ? "" : document.views[0]));
+    throw MeaningError(fmt::format("{}: no colour of view {}, expected one, or --beauty NAME", document.path, wanted));
   if (layers.size() > 1) refuseTwo(document.path, "pictures", nameLayer(layers[0]), nameLayer(layers[1]), "--beauty");
   for (const ExrChannel* channel : layers[0].channel)
     if (channel && channel->type == PixelType::uint32)
@@ -256,12 +251,21 @@ BeautyChannels resolveBeauty(const ExrDocument& document, const std::vector<Name
 }
 
 const NamedChannel& resolveDepth(const ExrDocument& document, const std::vector<NamedChannel>& channels,
-                                 const BeautyChannels& beauty, const std::string& name) {
+                                 const BeautyChannels& beauty, const std::string& name, const Producer* producer) {
   std::vector<const NamedChannel*> found;
-  for (const NamedChannel& channel : channels)
-    if (name.empty() ? isDepth(channel, channels) && sameView(channel.view, beauty.view)
-                     : (channel.fullName == name || channel.channel->name == name) && !channel.channel->bytes.empty())
-      found.push_back(&channel);
+  const auto collect = [&](auto&& condition) {
+    for (const NamedChannel& channel : channels)
+      if (condition(channel)) found.push_back(&channel);
+  };
+  const auto ofView = [&](const NamedChannel& channel) { return sameView(channel.view, beauty.view); };
+  if (!name.empty()) {
+    collect([&](const NamedChannel& c) {
+      return (c.fullName == name || c.channel->name == name) && !c.channel->bytes.empty();
+    });
+  } else {
+    if (producer) collect([&](const NamedChannel& c) { return ofView(c) && isDepthOf(*producer, channels, c); });
+    if (found.empty()) collect([&](const NamedChannel& c) { return ofView(c) && isDepth(c, channels); });
+  }
   const auto keep = [&](auto&& condition) {
     std::vector<const NamedChannel*> kept;
     for (const NamedChannel* channel : found)

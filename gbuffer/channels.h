@@ -18,6 +18,8 @@
 
 namespace pellucid {
 
+struct Producer;  // gbuffer/producers.h
+
 // A channel with its name taken apart.
 struct NamedChannel {
   int part = 0;
@@ -37,15 +39,17 @@ struct BeautyChannels {
   const ExrChannel* channel[4] = {};  // R G B A; A may be null
 };
 // Throws MeaningError for none or two (naming both and --beauty), InputError for luminance-chroma.
-//   layer    what --beauty says: a layer, a part, or a view; "" resolves it
-//   blender  Blender's own "Composite" layer, which has no depth, gives way to a view layer
+//   layer     what --beauty says: a layer, a part, or a view; "" resolves it
+//   view      what --view says; "" is the first one in the file
+//   producer  whose layer that gives way to others does so; null: nobody that is known
 BeautyChannels resolveBeauty(const ExrDocument& document, const std::vector<NamedChannel>& channels,
-                             const std::string& layer, bool blender);
+                             const std::string& layer, const std::string& view, const Producer* producer);
 
 // The one depth that belongs to the beauty. Throws MeaningError for none or two (naming both and --depth).
-//   name  what --depth says: a channel, with or without its part; "" resolves it
+//   name      what --depth says: a channel, with or without its part; "" resolves it
+//   producer  whose own name of depth wins over others; null: nobody that is known
 const NamedChannel& resolveDepth(const ExrDocument& document, const std::vector<NamedChannel>& channels,
-                                 const BeautyChannels& beauty, const std::string& name);
+                                 const BeautyChannels& beauty, const std::string& name, const Producer* producer);
 
 // Three channels, or one, of a pass that belongs to the beauty.
 struct PassChannels {
@@ -60,8 +64,5 @@ std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channel
 
 // "R, G, B and 30 more"
 std::string listNames(const std::vector<NamedChannel>& channels, std::size_t most = 40);
-
-// Blender's multilayer files say so in their header.
-bool isBlender(const ExrDocument& document);
 
 }  // namespace pellucid

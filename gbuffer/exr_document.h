@@ -91,6 +91,8 @@ struct NewExr {
   std::vector<ExrChannel> channels;
   std::map<std::string, std::string> attributes;
   std::map<std::string, std::vector<float>> matrices;  // 16 numbers each, row major, as m44f attributes
+  // A part whose attributes are copied, but for those of storage and those that are given above; may be null.
+  const ExrPart* like = nullptr;
 };
 void writeNewExr(const std::string& path, const NewExr& file);
 // Several parts of one display window, in order.

@@ -17,7 +17,9 @@
 #include <OpenEXR/ImfTiledOutputPart.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
+#include <iterator>
 #include <new>
 #include <stdexcept>
 
@@ -224,6 +226,19 @@ std::vector<std::string> writeExr(const std::string& path, const ExrDocument& do
 
 namespace {
 
+// What a header says of how and where its pixels are stored, which another file has its own of.
+constexpr const char* kStorage[] = {"channels",           "compression", "dataWindow",     "displayWindow",
+                                    "lineOrder",          "tiles",       "type",           "version",
+                                    "chunkCount",         "name",        "view",           "multiView",
+                                    "maxSamplesPerPixel", "preview",     "deepImageState", "dwaCompressionLevel"};
+
+void copyAttributes(const ExrPart& from, exr::Header& to) {
+  for (auto it = from.header->header.begin(); it != from.header->header.end(); ++it)
+    if (std::none_of(std::begin(kStorage), std::end(kStorage),
+                     [&](const char* name) { return it.name() == std::string(name); }))
+      to.insert(it.name(), it.attribute());
+}
+
 // The header and the memory of one new part.
 struct NewPart {
   exr::Header header;
@@ -231,15 +246,16 @@ struct NewPart {
 
   explicit NewPart(const NewExr& file)
       : header(boxOf(file.display), boxOf(file.data), static_cast<float>(file.pixelAspect)) {
+    if (file.like) copyAttributes(*file.like, header);
     header.compression() = exr::ZIP_COMPRESSION;
     if (!file.part.empty()) header.setName(file.part);
-    for (const auto& [name, text] : file.attributes) header.insert(name, exr::StringAttribute(text));
+    for (const auto& [name, text] : file.attributes) put(name, exr::StringAttribute(text));
     for (const auto& [name, numbers] : file.matrices) {
       IMATH_NAMESPACE::M44f matrix;
       for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column)
           matrix[row][column] = numbers.at(static_cast<std::size_t>(row * 4 + column));
-      header.insert(name, exr::M44fAttribute(matrix));
+      put(name, exr::M44fAttribute(matrix));
     }
     const std::size_t pixels =
         static_cast<std::size_t>(file.data.width()) * static_cast<std::size_t>(file.data.height());
@@ -249,6 +265,15 @@ struct NewPart {
       header.channels().insert(channel.name, exr::Channel(exrType(channel.type)));
       insertSlice(frame, channel.name, channel.type, channel.bytes.data(), file.data);
     }
+  }
+
+ private:
+  // An attribute of another type under that name goes.
+  void put(const std::string& name, const exr::Attribute& attribute) {
+    const bool another =
+        header.find(name) != header.end() && std::string(header[name].typeName()) != attribute.typeName();
+    if (another) header = without(header, name);
+    header.insert(name, attribute);
   }
 };
 

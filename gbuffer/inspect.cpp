@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "gbuffer/channels.h"
+#include "gbuffer/deep_channels.h"
+#include "gbuffer/deep_io.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/part_camera.h"
 
 namespace pellucid {
 namespace {
@@ -97,6 +101,68 @@ json cameraJson(const Camera& camera) {
           {"range", {numberJson(camera.rangeNear), numberJson(camera.rangeFar)}}};
 }
 
+// The camera that a part states, checked where it can be.
+json cameraReport(const OpaqueFile& file, bool verify) {
+  if (!file.gbuffer.camera) return json();
+  json report = cameraJson(*file.gbuffer.camera);
+  report["residualPixels"] = json();
+  if (!verify) return report;
+  try {
+    const std::optional<double> residual = verifyCamera(file, *file.gbuffer.camera);
+    if (residual) report["residualPixels"] = *residual;
+  } catch (const MeaningError& error) {
+    report["refusal"] = printable(error.what());
+  }
+  return report;
+}
+
+// A picture of deep samples: what its channels are taken for, and how many samples there are.
+json deepJson(const ExrDocument& document, const ReadOptions& options, std::vector<std::string>& notes) {
+  const DeepChannels channels = resolveDeep(document, options.view);
+  if (!channels.note.empty()) notes.push_back(channels.note);
+  const auto named = [&](int index) {
+    return index < 0 ? json() : json(printable(channels.names[static_cast<std::size_t>(index)]));
+  };
+  json colour = json::array(), opacity = json::array();
+  for (const int index : channels.light) colour.push_back(named(index));
+  if (channels.colouredOpacity)
+    for (const int index : channels.opacity) opacity.push_back(named(index));
+  if (channels.alpha >= 0) opacity.push_back(named(channels.alpha));
+  std::uint64_t samples = 0, most = 0;
+  float nearest = std::numeric_limits<float>::infinity(), farthest = -nearest;
+  DeepReader reader(document.path, channels.part, {channels.names[static_cast<std::size_t>(channels.z)]});
+  DeepRows rows;
+  for (int y = reader.data().y0; y < reader.data().y1; y = rows.window.y1) {
+    rows = reader.read(y, reader.data().y1, std::uint64_t{1} << 21, std::move(rows));
+    samples += rows.offsets.back();
+    for (std::size_t i = 0; i + 1 < rows.offsets.size(); ++i)
+      most = std::max(most, rows.offsets[i + 1] - rows.offsets[i]);
+    for (const float z : rows.channels[0])
+      if (std::isfinite(z)) nearest = std::min(nearest, z), farthest = std::max(farthest, z);
+  }
+  json depth{{"channel", named(channels.z)},
+             {"back", named(channels.zBack)},
+             {"kind", options.depthKind.empty() ? "planar" : options.depthKind},
+             {"metresPerUnit", numberJson(options.metresPerUnit.value_or(1.0))}};
+  if (nearest <= farthest) depth["least"] = nearest, depth["most"] = farthest;
+  json report{{"deep",
+               {{"part", channels.part},
+                {"colour", colour},
+                {"opacity", opacity},
+                {"record", channels.hasRecord()},
+                {"samples", samples},
+                {"mostInAPixel", most}}},
+              {"depth", depth}};
+  OpaqueFile file;
+  file.document.path = document.path;
+  const ExrPart& part = document.parts[static_cast<std::size_t>(channels.part)];
+  file.gbuffer.display = part.display;
+  readCamera(part, options.metresPerUnit.value_or(1.0), file);
+  notes.insert(notes.end(), file.notes.begin(), file.notes.end());
+  report["camera"] = cameraReport(file, false);
+  return report;
+}
+
 json understoodJson(const OpaqueFile& file) {
   const OpaqueChoice& choice = file.choice;
   const auto partName = [&](int part) { return printable(file.document.parts[static_cast<std::size_t>(part)].name); };
@@ -114,21 +180,17 @@ json understoodJson(const OpaqueFile& file) {
                      {"channel", printable(choice.depthChannel)},
                      {"kind", choice.depthKind},
                      {"far", numberJson(choice.farValue)},
+                     {"least", numberJson(choice.least)},
+                     {"most", numberJson(choice.most)},
                      {"metresPerUnit", numberJson(file.metresPerUnit)},
                      {"notFinite", choice.nonFiniteDepth},
                      {"precision", numberJson(static_cast<double>(file.gbuffer.depthPrecision))},
                      {"histogram", histogramJson(file.gbuffer.viewZ)}};
+  report["preset"] =
+      choice.preset.empty() ? json() : json({{"name", choice.preset}, {"by", printable(choice.presetBy)}});
   report["normals"] = !file.gbuffer.normal.empty();
   report["occlusion"] = !file.gbuffer.occlusion.empty();
-  report["camera"] = file.gbuffer.camera ? cameraJson(*file.gbuffer.camera) : json();
-  if (file.gbuffer.camera) {
-    try {
-      const std::optional<double> residual = verifyCamera(file, *file.gbuffer.camera);
-      report["camera"]["residualPixels"] = residual ? json(*residual) : json();
-    } catch (const MeaningError& error) {
-      report["camera"]["refusal"] = printable(error.what());
-    }
-  }
+  report["camera"] = cameraReport(file, true);
   return report;
 }
 
@@ -141,6 +203,32 @@ std::string textOf(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+std::string cameraText(const json& camera) {
+  if (camera.is_null()) return "camera: none in the file\n";
+  return fmt::format("camera: {}, {}{}\n", camera["origin"].get<std::string>(), camera["projection"].get<std::string>(),
+                     camera.contains("refusal") ? "; " + camera["refusal"].get<std::string>()
+                     : camera["residualPixels"].is_null()
+                         ? ", not checked"
+                         : fmt::format(", {:.3g} pixels from the positions", camera["residualPixels"].get<double>()));
+}
+
+std::string deepText(const json& deep, const json& depth) {
+  const auto list = [](const json& names) {
+    std::string text;
+    for (const json& name : names) text += " " + textOf(name);
+    return text;
+  };
+  std::string text = fmt::format("deep picture: {} samples, at most {} in a pixel\n", deep["samples"].dump(),
+                                 deep["mostInAPixel"].dump());
+  text += fmt::format("colour:{}\nopacity:{}\n", list(deep["colour"]), list(deep["opacity"]));
+  text += fmt::format("depth: {}{}, {}, 1 unit is {} m", textOf(depth["channel"]),
+                      depth["back"].is_null() ? "" : " to " + textOf(depth["back"]), textOf(depth["kind"]),
+                      textOf(depth["metresPerUnit"]));
+  if (depth.contains("least"))
+    text += fmt::format(", {:.6g} to {:.6g}", depth["least"].get<double>(), depth["most"].get<double>());
+  return text + "\n";
+}
+
 }  // namespace
 
 nlohmann::json inspectExr(const std::string& path, const ReadOptions& options) {
@@ -150,10 +238,17 @@ nlohmann::json inspectExr(const std::string& path, const ReadOptions& options) {
   report["parts"] = json::array();
   for (const ExrPart& part : document.parts) report["parts"].push_back(partJson(part));
   std::vector<std::string> notes = document.notes;
+  const bool deep =
+      std::all_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; });
   try {
-    const OpaqueFile file = interpretOpaque(std::move(document), options);
-    report.update(understoodJson(file));
-    notes = file.notes;
+    if (deep) {
+      notes.clear();  // that they are not read here: they are
+      report.update(deepJson(document, options, notes));
+    } else {
+      const OpaqueFile file = interpretOpaque(std::move(document), options);
+      report.update(understoodJson(file));
+      notes = file.notes;
+    }
   } catch (const UsageError&) {
     throw;
   } catch (const Error& error) {
@@ -182,6 +277,8 @@ std::string inspectionText(const nlohmann::json& report) {
     const auto inPart = [&](const json& choice) {
       return report["parts"].size() > 1 ? fmt::format(" of part {}", textOf(choice["partName"])) : std::string();
     };
+    if (!report["preset"].is_null())
+      text += fmt::format("preset: {}, by {}\n", textOf(report["preset"]["name"]), textOf(report["preset"]["by"]));
     text += fmt::format("beauty:{}{}\n", names, inPart(report["beauty"]));
     const json& depth = report["depth"];
     text += fmt::format("depth: {}{}, {}, nothing hit from {}\n", textOf(depth["channel"]), inPart(depth),
@@ -192,17 +289,9 @@ std::string inspectionText(const nlohmann::json& report) {
     text += fmt::format("  nothing: {} pixels\n", depth["histogram"]["nothing"].get<std::size_t>());
     text += fmt::format("normals: {}\nocclusion: {}\n", report["normals"].get<bool>() ? "yes" : "no",
                         report["occlusion"].get<bool>() ? "yes" : "no");
-    const json& camera = report["camera"];
-    if (camera.is_null())
-      text += "camera: none in the file\n";
-    else
-      text += fmt::format(
-          "camera: {}, {}{}\n", camera["origin"].get<std::string>(), camera["projection"].get<std::string>(),
-          camera.contains("refusal") ? "; " + camera["refusal"].get<std::string>()
-          : camera["residualPixels"].is_null()
-              ? ", not checked"
-              : fmt::format(", {:.3g} pixels from the positions", camera["residualPixels"].get<double>()));
+    text += cameraText(report["camera"]);
   }
+  if (report.contains("deep")) text += deepText(report["deep"], report["depth"]) + cameraText(report["camera"]);
   for (const json& note : report["notes"]) text += "note: " + note.get<std::string>() + "\n";
   if (report.contains("refusal")) text += "cannot be composited onto: " + report["refusal"].get<std::string>() + "\n";
   return text;

@@ -12,12 +12,15 @@
 namespace pellucid {
 
 struct ReadOptions {
-  std::string preset = "auto";  // auto | blender
-  std::string beautyLayer;      // --beauty: a layer, a part or a view; "" resolves it
-  std::string depthChannel;     // --depth: full channel name (with its part where parts have names); "" resolves it
-  std::string depthKind = "planar";  // planar | ray | inverse | device
-  std::optional<double> farValue;    // --far: this and anything beyond is 'nothing hit'
-  double metresPerUnit = 1.0;        // --unit
+  std::string preset = "auto";     // --preset: auto, or a row of producers.h
+  std::string beautyLayer;         // --beauty: a layer, a part or a view; "" resolves it
+  std::string view;                // --view; "" is the first of the file
+  std::string depthChannel;        // --depth: full channel name (with its part where parts have names); "" resolves it
+  std::string depthKind;           // --depth-kind, see depth_kind.h; "" is the producer's, else planar
+  std::optional<double> farValue;  // --far: this and anything beyond is 'nothing hit'
+  std::optional<double> metresPerUnit;  // --unit; without it the producer's, else 1
+  // Windows and camera alone: no pixel is looked at, because the camera that converts depth is not chosen yet.
+  bool framingAlone = false;
 };
 
 // What was chosen, by name and why, for `inspect` and for messages.
@@ -27,7 +30,9 @@ struct OpaqueChoice {
   int depthPart = 0;
   std::string depthChannel;
   std::string depthKind;
-  double farValue = 0;  // the value (file units) from which depth means nothing hit
+  double farValue = 0;           // the value (file units) from which depth means nothing hit
+  double least = 0, most = 0;    // depths that were hit, as the file has them; both 0 where nothing was
+  std::string preset, presetBy;  // "" where nobody is recognised; by what, "attribute unreal/version"
   std::size_t farPixels = 0, nonFiniteColour = 0, nonFiniteDepth = 0;
 };
 
@@ -35,7 +40,8 @@ struct OpaqueFile {
   ExrDocument document;
   GBuffer gbuffer;
   OpaqueChoice choice;
-  double metresPerUnit = 1.0;      // as asked for
+  double metresPerUnit = 1.0;      // as asked for, or the producer's
+  std::string cameraRefusal;       // why the camera attributes that are there were not taken
   std::vector<std::string> notes;  // one sentence each, for stderr
 };
 
@@ -47,11 +53,13 @@ struct ExtraLayer {
 
 // Throws InputError (missing, damaged, luminance-chroma, cube map, mip map) or MeaningError (no depth, two candidates).
 // Camera attributes that contradict themselves are a note and no camera: another may be given.
-// `needCamera` matters for depth kinds ray and device: they convert with the camera, so the caller passes one if it has
-// it.
+// Depth kinds ray, device and auto convert with the camera, so the caller passes one if it has it.
 OpaqueFile readOpaque(const std::string& path, const ReadOptions& options, const Camera* camera = nullptr);
 // The same, of a file that has been read. Its own camera serves where none is given.
 OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, const Camera* camera = nullptr);
+
+// What was understood, a line each: picture, depth. For messages and `inspect`.
+std::vector<std::string> understoodLines(const OpaqueFile& file);
 
 // Same parts, windows, attributes, channel types and compression; only the beauty channels of pixels with touched != 0
 // change, everything else is bit for bit what was read. Lossy compressions are replaced by ZIP, which is noted.
@@ -63,10 +71,11 @@ std::vector<std::string> writePicture(const std::string& path, const OpaqueFile&
 
 // A new single-part scanline ZIP file of float or half channels, for everything that has no input to imitate. Half
 // values are clamped as in writePicture. Returns the notes.
+//   like  a part whose attributes are copied, but for those of storage; its camera stays when it states one
 std::vector<std::string> writeLayers(const std::string& path, const Window& display, const Window& data,
                                      const std::vector<ExtraLayer>& layers,
                                      const std::map<std::string, std::string>& attributes = {},
-                                     const Camera* camera = nullptr, bool half = false);
+                                     const Camera* camera = nullptr, bool half = false, const ExrPart* like = nullptr);
 
 // Checks a camera against what the file shows: the P / Position pass reprojected on pixel and depth, when there is one.
 // Also tries Blender's Z-up positions. Returns the median residual in pixels, or nothing when it cannot be checked.

@@ -9,6 +9,7 @@
 #include "gbuffer/opaque_io.h"
 #include "gbuffer/part_camera.h"
 #include "gbuffer/pixel_rows.h"
+#include "gbuffer/producers.h"
 
 namespace pellucid {
 namespace {
@@ -118,10 +119,41 @@ void readOcclusion(const PassChannels& pass, OpaqueFile& file) {
 }
 
 void checkOptions(const ReadOptions& options) {
-  if (options.preset != "auto" && options.preset != "blender")
-    throw UsageError(fmt::format("--preset: found '{}', expected auto or blender", options.preset));
-  if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
-    throw UsageError(fmt::format("--unit: found {}, expected metres above 0", options.metresPerUnit));
+  const double unit = options.metresPerUnit.value_or(1.0);
+  if (!(unit > 0.0) || !std::isfinite(unit))
+    throw UsageError(fmt::format("--unit: found {}, expected metres above 0", unit));
+  if (!options.depthKind.empty()) parseDepthKind(options.depthKind);
+}
+
+// Pictures that no pinhole or orthographic camera has taken.
+void refuseEnvironmentMaps(const ExrPart& part, const std::string& path) {
+  const auto found = part.attributes.find("envmap");
+  if (found == part.attributes.end()) return;
+  const bool cube = found->second.bytes.size() == 1 && found->second.bytes[0] == 1;
+  throw MeaningError(fmt::format("{}: attribute envmap: found a {} map, expected a picture that a camera has taken",
+                                 path, cube ? "cube" : "lat-long"));
+}
+
+void readOtherPasses(const std::vector<NamedChannel>& channels, const BeautyChannels& beauty, const Producer* producer,
+                     OpaqueFile& file) {
+  const NormalSpace space = producer ? producer->normals : NormalSpace::world;
+  if (const auto normals = resolvePass(channels, beauty, Pass::normal)) {
+    if (space == NormalSpace::camera)
+      file.notes.push_back(
+          fmt::format("normals {}: left out, {} writes them in camera space", normals->layerName, producer->title));
+    else
+      readNormals(*normals, space == NormalSpace::worldZUp, file);
+  }
+  if (const auto occlusion = resolvePass(channels, beauty, Pass::occlusion)) readOcclusion(*occlusion, file);
+}
+
+// What --depth-kind says, else what the producer writes; planar for a channel that --depth names beside its own.
+DepthKind kindOf(const ReadOptions& options, const Producer* producer, const std::vector<NamedChannel>& channels,
+                 const NamedChannel& depth) {
+  if (!options.depthKind.empty()) return parseDepthKind(options.depthKind);
+  const bool another =
+      !options.depthChannel.empty() && producer && *producer->depth && !isDepthOf(*producer, channels, depth);
+  return parseDepthKind(producer && !another ? producer->kind : "planar");
 }
 
 }  // namespace
@@ -129,9 +161,10 @@ void checkOptions(const ReadOptions& options) {
 void readCamera(const ExrPart& part, double unit, OpaqueFile& file) {
   const auto worldToCamera = matrixOf(part, "worldToCamera"), worldToNdc = matrixOf(part, "worldToNDC");
   if (worldToCamera.has_value() != worldToNdc.has_value())
-    file.notes.push_back(fmt::format("found the attribute {} without {}, so no camera from the file",
-                                     worldToCamera ? "worldToCamera" : "worldToNDC",
-                                     worldToCamera ? "worldToNDC" : "worldToCamera"));
+    file.notes.push_back(file.cameraRefusal =
+                             fmt::format("found the attribute {} without {}, so no camera from the file",
+                                         worldToCamera ? "worldToCamera" : "worldToNDC",
+                                         worldToCamera ? "worldToNDC" : "worldToCamera"));
   if (!worldToCamera || !worldToNdc) return;
   try {
     Camera camera = cameraFromExr(*worldToCamera, *worldToNdc, file.document.path);
@@ -143,6 +176,7 @@ void readCamera(const ExrPart& part, double unit, OpaqueFile& file) {
     if (camera.origin.find(',') != std::string::npos) file.notes.push_back("camera from " + camera.origin);
   } catch (const MeaningError& error) {
     file.notes.push_back(error.what());
+    file.cameraRefusal = error.what();
   }
 }
 
@@ -151,15 +185,16 @@ OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, con
   OpaqueFile file;
   file.document = std::move(document);
   file.notes = file.document.notes;
-  file.metresPerUnit = options.metresPerUnit;
-  const bool blender = options.preset == "blender" || isBlender(file.document);
   const std::vector<NamedChannel> channels = nameChannels(file.document);
-  const BeautyChannels beauty = resolveBeauty(file.document, channels, options.beautyLayer, blender);
+  const RecognisedProducer recognised = recogniseProducer(file.document, channels, options.preset);
+  const Producer* producer = recognised.row;
+  const BeautyChannels beauty = resolveBeauty(file.document, channels, options.beautyLayer, options.view, producer);
   const ExrPart& part = partOf(file, beauty.part);
+  refuseEnvironmentMaps(part, file.document.path);
   if (part.levelMode != 0)
     throw InputError(fmt::format("{}: found a {} map, expected one level: convert it first", file.document.path,
                                  part.levelMode == 1 ? "mip" : "rip"));
-  const NamedChannel& depth = resolveDepth(file.document, channels, beauty, options.depthChannel);
+  const NamedChannel& depth = resolveDepth(file.document, channels, beauty, options.depthChannel, producer);
 
   GBuffer& gbuffer = file.gbuffer;
   gbuffer.display = part.display;
@@ -169,15 +204,20 @@ OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, con
   file.choice.beautyPart = beauty.part;
   file.choice.depthPart = depth.part;
   file.choice.depthChannel = depth.channel->name;
-  if (!beauty.view.empty() && options.beautyLayer.empty())
-    file.notes.push_back(fmt::format("view {} is used; --beauty names another", beauty.view));
+  file.choice.preset = producer ? producer->name : "";
+  file.choice.presetBy = recognised.by;
+  file.metresPerUnit = options.metresPerUnit.value_or(producer ? producer->unit : 1.0);
+  if (!beauty.view.empty() && options.beautyLayer.empty() && options.view.empty())
+    file.notes.push_back(fmt::format("view {} is used; --view names another", beauty.view));
+  readCamera(part, file.metresPerUnit, file);
+  if (options.framingAlone) return file;
   readBeauty(beauty, file);
-  readCamera(part, options.metresPerUnit, file);
   if (!camera && gbuffer.camera) camera = &*gbuffer.camera;
-  noteRounded(partOf(file, depth.part), *depth.channel, file);
-  convertDepth(partOf(file, depth.part), *depth.channel, options, camera, file);
-  if (const auto normals = resolvePass(channels, beauty, Pass::normal)) readNormals(*normals, blender, file);
-  if (const auto occlusion = resolvePass(channels, beauty, Pass::occlusion)) readOcclusion(*occlusion, file);
+  const ExrPart& depthPart = partOf(file, depth.part);
+  noteRounded(depthPart, *depth.channel, file);
+  convertDepth(depthPart, *depth.channel, kindOf(options, producer, channels, depth), !options.depthKind.empty(),
+               producer, options.farValue, camera, file);
+  readOtherPasses(channels, beauty, producer, file);
   return file;
 }
 

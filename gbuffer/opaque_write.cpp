@@ -98,14 +98,16 @@ std::vector<std::string> writePicture(const std::string& path, const OpaqueFile&
 std::vector<std::string> writeLayers(const std::string& path, const Window& display, const Window& data,
                                      const std::vector<ExtraLayer>& layers,
                                      const std::map<std::string, std::string>& attributes, const Camera* camera,
-                                     bool half) {
+                                     bool half, const ExrPart* like) {
   NewExr file;
+  file.like = like;
+  if (like) file.pixelAspect = like->pixelAspect;
   file.display = display;
   file.data = data;
   file.attributes = attributes;
   Encoder encoder;
   file.channels = channelsOf(layers, data, half ? PixelType::half : PixelType::float32, encoder);
-  if (camera) {
+  if (camera && !(like && like->attributes.contains("worldToCamera"))) {
     float matrices[2][4][4];
     cameraToExr(*camera, matrices[0], matrices[1]);
     file.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);

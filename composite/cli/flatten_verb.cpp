@@ -15,7 +15,7 @@ namespace {
 
 struct FlattenFlags {
   std::vector<std::string> files;
-  std::string output, budget = "16M", type = "float";
+  std::string output, view, budget = "16M", type = "float";
   RunFlags run;
 };
 
@@ -46,12 +46,14 @@ void flattenVerb(const FlattenFlags& flags) {
   Stages stages;
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
   const std::uint64_t most = parseBudget(flags.budget) / 32;
-  const FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most); });
-  if (flat.oddities.notFinite) note("{} deep samples are not finite and were skipped", flat.oddities.notFinite);
+  const FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most, flags.view); });
+  say(flat.notes);
+  if (flat.oddities.notFinite) note("{} deep samples are not numbers and were skipped", flat.oddities.notFinite);
   if (flat.oddities.outOfRange)
     note("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
   stages.time("write", [&] {
-    say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half"));
+    say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half",
+                    &flat.like));
   });
   nlohmann::json report{{"output", flags.output}, {"samples", flat.samples}};
   RunCounts counts;
@@ -66,6 +68,7 @@ void addFlatten(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("flatten", "Merge deep EXR files and composite their samples, exactly");
   verb->add_option("files", flags->files, "Deep EXR files, in any order")->required();
   verb->add_option("-o,--output", flags->output, "Flat EXR to write")->required();
+  verb->add_option("--view", flags->view, "View of stereo files, such as left; without it the first deep part");
   verb->add_option("--budget", flags->budget, "Deep samples held at once, in bytes (64M, 2G; at least 1M)")
       ->capture_default_str();
   verb->add_option("--type", flags->type, "Of the flat channels")

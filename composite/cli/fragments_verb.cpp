@@ -36,7 +36,7 @@ void fragmentsVerb(const FragmentsFlags& flags) {
   Compositor compositor(request, [](const std::string& note) { say(note); });
   const Shot& shot = compositor.shot();
   DeepWriter writer(flags.output, headerOf(shot));
-  RowGatherer rows(shot.opaque.gbuffer.data, request.shot.read.metresPerUnit, writer);
+  RowGatherer rows(shot.opaque.gbuffer.data, shot.opaque.metresPerUnit, writer);
   const RunCounts counts = compositor.listFragments(request, [&](const FragmentLists& lists) { rows.add(lists); });
   writer.finish();
   nlohmann::json report{{"output", flags.output}, {"fragments", counts.fragments}};

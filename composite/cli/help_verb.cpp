@@ -11,6 +11,7 @@
 #include "composite/methods/method.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/producers.h"
 #include "gbuffer/tiers.h"
 #include "gbuffer/weight_text.h"
 
@@ -23,11 +24,6 @@ std::string tiersHelp() {
   return text;
 }
 
-std::string presetsHelp() {
-  return "auto: the program is recognised by what its files hold\n"
-         "blender: Blender's layer names, and normals in a world whose z points up\n";
-}
-
 struct Topic {
   const char *name, *heading;
   std::string (*rows)();  // a line each
@@ -37,7 +33,7 @@ const Topic kTopics[] = {
     {"weights", "What --weight takes", weightsHelp},
     {"precision", "What --precision takes", tiersHelp},
     {"set", "What --set MATERIAL.key=value and glTF's extras.pellucid may say of a material", gltf::setKeysHelp},
-    {"presets", "What --preset takes: the program that wrote the EXR", presetsHelp},
+    {"presets", "What --preset takes: the program that wrote the EXR; auto recognises it", producersHelp},
 };
 
 // Rows are "name: text", or "name   text" where names are padded.

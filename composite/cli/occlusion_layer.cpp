@@ -8,6 +8,7 @@
 #include "composite/cli/options.h"
 #include "composite/pipeline/shot.h"
 #include "gbuffer/channels.h"
+#include "gbuffer/depth_kind.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -22,11 +23,11 @@ std::string saidOfLayer(const std::string& text) {
 }  // namespace
 
 OpaqueFile readThroughCamera(const std::string& path, const ReadOptions& options, const std::string& camera) {
-  if (options.depthKind != "ray" && options.depthKind != "device") return readOpaque(path, options);
-  ReadOptions windows = options;
-  windows.depthKind = "planar";
-  OpaqueFile first = readOpaque(path, windows);
-  const Camera chosen = chooseCamera(cameraChoice(camera), first.gbuffer, Scene{}, path);
+  if (options.depthKind.empty() || !needsCamera(parseDepthKind(options.depthKind))) return readOpaque(path, options);
+  ReadOptions framing = options;
+  framing.framingAlone = true;
+  OpaqueFile first = readOpaque(path, framing);
+  const Camera chosen = chooseCamera(cameraChoice(camera), first.gbuffer, Scene{}, path, first.cameraRefusal);
   return interpretOpaque(std::move(first.document), options, &chosen);
 }
 

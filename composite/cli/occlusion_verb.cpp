@@ -63,6 +63,7 @@ void occlusionVerb(const OcclusionFlags& flags) {
   Stages stages;
   const OpaqueFile opaque =
       stages.time("read picture", [&] { return readThroughCamera(flags.opaque, flags.read.options(), flags.camera); });
+  say(understoodLines(opaque));
   say(opaque.notes);
   const OpaqueFile layer = stages.time("read layer", [&] {
     ReadOptions options = flags.read.options();

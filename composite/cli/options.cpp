@@ -80,35 +80,14 @@ std::pair<double, double> parseRange(const std::string& text, const std::string&
   return {numbers[0], numbers[1]};
 }
 
-void ReadFlags::addTo(CLI::App& verb) {
-  verb.add_option("--preset", preset, "Producer of the EXR")
-      ->check(CLI::IsMember({"auto", "blender"}))
-      ->capture_default_str();
-  verb.add_option("--beauty", beauty, "Layer of the beauty, such as ViewLayer.Combined");
-  verb.add_option("--depth", depth, "Channel of the depth, such as ViewLayer.Depth.Z");
-  verb.add_option("--depth-kind", depthKind, "What the depth means")
-      ->check(CLI::IsMember({"planar", "ray", "inverse", "device"}))
-      ->capture_default_str();
-  verb.add_option("--far", farValue, "Depth, in the file's unit, from which nothing was hit");
-  verb.add_option("--unit", unit, "Metres in one scene unit")->check(CLI::PositiveNumber)->capture_default_str();
-}
-
-ReadOptions ReadFlags::options() const {
-  ReadOptions options;
-  options.preset = preset;
-  options.beautyLayer = beauty;
-  options.depthChannel = depth;
-  options.depthKind = depthKind;
-  options.farValue = farValue;
-  options.metresPerUnit = unit;
-  return options;
-}
-
 void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--camera", camera, "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
   verb.add_option("--environment", environment,
                   "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");
   verb.add_option("--set", overrides, "MATERIAL.key=value: " + gltf::setKeyNames())->allow_extra_args(false);
+  verb.add_option("--scene-unit", unit, "Metres in one unit of the glTF, of fog and its grids; --unit is the picture's")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   verb.add_option("--lumens-per-watt", lumensPerWatt, "glTF lights are photometric, renders are not")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -178,7 +157,7 @@ SurroundingsChoice surroundingsChoice(const std::string& text) {
 void SceneFlags::into(Request& request) const {
   const std::size_t bytes = parseBudget(budget), pages = pageBytes(bytes);
   SceneOptions& scene = request.shot.scene;
-  scene.metresPerUnit = request.shot.read.metresPerUnit;
+  scene.metresPerUnit = unit;
   scene.lumensPerWatt = lumensPerWatt;
   scene.overrides = overrides;
   scene.streamBytes = pages;

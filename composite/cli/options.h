@@ -6,22 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "composite/cli/read_flags.h"
 #include "composite/pipeline/request.h"
 
 namespace pellucid::cli {
 
-struct ReadFlags {
-  std::string preset = "auto", beauty, depth, depthKind = "planar";
-  std::optional<double> farValue;
-  double unit = 1.0;
-  void addTo(CLI::App& verb);
-  ReadOptions options() const;
-};
-
 struct SceneFlags {
   std::string camera, environment;
   std::vector<std::string> overrides;
-  double lumensPerWatt = 683.0;
+  double lumensPerWatt = 683.0, unit = 1.0;  // metres in one unit of the glTF
   std::string textureFilter = "mipmap", mask = "smooth", order = "file", budget = "256M";
   int device = -1;
   void addTo(CLI::App& verb);

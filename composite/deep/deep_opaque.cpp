@@ -23,8 +23,7 @@ bool bends(const Fragment& fragment) {
 
 }  // namespace
 
-DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit) {
-  const DeepChannels channels = resolveDeep(path);
+DeepOpaque readDeepOpaque(const std::string& path, const DeepChannels& channels, const DepthConverter& depth) {
   DeepReader reader(path, channels.part, channels.names);
   DeepOpaque opaque;
   opaque.display = reader.display();
@@ -38,10 +37,11 @@ DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit) {
   for (int y = opaque.data.y0; y < opaque.data.y1;) {
     rows = reader.read(y, opaque.data.y1, kMostAtOnce, std::move(rows));
     for (std::size_t i = 0; i + 1 < rows.offsets.size(); ++i) {
+      const int px = opaque.data.x0 + static_cast<int>(i) % width, py = rows.window.y0 + static_cast<int>(i) / width;
       pixel.clear();
       for (std::uint64_t k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
         DeepSample sample;
-        if (sampleAt(channels, rows, k, metresPerUnit, sample, opaque.oddities) && sample.z > 0.0)
+        if (sampleAt(channels, rows, k, depth, px, py, sample, opaque.oddities) && sample.z > 0.0)
           pixel.push_back(sample);
       }
       glm::dvec4 left(1.0);
@@ -57,7 +57,8 @@ DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit) {
       const std::size_t at = opaque.offsets.size() - 1;
       opaque.offsets.push_back(opaque.samples.size());
       opaque.flat[at] = glm::vec4(glm::vec3(light), static_cast<float>(1.0 - left.w));
-      if (std::max({left.x, left.y, left.z}) <= kCovered) opaque.farthest[at] = farthest;
+      if (std::max({left.x, left.y, left.z}) <= kCovered)
+        opaque.farthest[at] = static_cast<double>(farthest) < kFarthest ? farthest : kNothing;
     }
     y = rows.window.y1;
   }

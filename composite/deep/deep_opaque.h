@@ -28,8 +28,10 @@ struct DeepOpaque {
   DeepOddities oddities;
 };
 
-// Throws what resolveDeep and DeepReader throw.
-DeepOpaque readDeepOpaque(const std::string& path, double metresPerUnit);
+// Throws what DeepReader throws.
+//   channels  of the file
+//   depth     from the file's numbers
+DeepOpaque readDeepOpaque(const std::string& path, const DeepChannels& channels, const DepthConverter& depth);
 
 // Lists of one row of pixels: for every pixel of some lists, one entry for each of its opaque samples, with the layers
 // in front of that sample alone, and one with all layers for what shows beyond.

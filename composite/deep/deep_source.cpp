@@ -39,11 +39,12 @@ bool contains(const Window& window, int x, int y) {
 
 }  // namespace
 
-DeepSource::DeepSource(const std::string& path, double metresPerUnit, const GBuffer& shot, std::uint32_t index)
+DeepSource::DeepSource(const std::string& path, const DepthConverter& depth, const GBuffer& shot, std::uint32_t index,
+                       const std::string& view)
     : path_(path),
-      metresPerUnit_(metresPerUnit),
+      depth_(depth),
       index_(index),
-      channels_(resolveDeep(path)),
+      channels_(resolveDeep(path, view)),
       reader_(path, channels_.part, channels_.names) {
   if (reader_.display() != shot.display)
     throw MeaningError(fmt::format("{}: found display window {}, expected {} of the opaque picture", path,
@@ -52,8 +53,9 @@ DeepSource::DeepSource(const std::string& path, double metresPerUnit, const GBuf
 
 std::vector<std::string> DeepSource::notes() const {
   std::vector<std::string> notes;
+  if (!channels_.note.empty()) notes.push_back(channels_.note);
   if (oddities_.notFinite)
-    notes.push_back(fmt::format("{}: {} deep samples are not finite and were skipped", path_, oddities_.notFinite));
+    notes.push_back(fmt::format("{}: {} deep samples are not numbers and were skipped", path_, oddities_.notFinite));
   if (oddities_.outOfRange)
     notes.push_back(fmt::format("{}: {} deep samples have an opacity outside 0 to 1, which was clamped", path_,
                                 oddities_.outOfRange));
@@ -148,7 +150,7 @@ class DeepMerge {
       const std::uint64_t first = rows_[s].offsets[index];
       for (std::uint64_t i = first; i < rows_[s].offsets[index + 1]; ++i) {
         DeepSample sample;
-        if (!sampleAt(source.channels_, rows_[s], i, source.metresPerUnit_, sample, oddities[s])) continue;
+        if (!sampleAt(source.channels_, rows_[s], i, source.depth_, x, y, sample, oddities[s])) continue;
         if (!(sample.z > 0.0) || sample.z > surface) continue;  // behind the camera or the surface
         if (sample.isVolume() && sample.zBack > surface) sample = partOfVolume(sample, sample.z, surface);
         const bool opaque = sample.opacity.x >= 1.0 && sample.opacity.y >= 1.0 && sample.opacity.z >= 1.0;
@@ -165,9 +167,8 @@ class DeepMerge {
           scratch.volumes.push_back(sample);
           continue;
         }
-        Fragment fragment = source.channels_.hasRecord()
-                                ? recordAt(source.channels_, rows_[s], i, source.metresPerUnit_)
-                                : fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
+        Fragment fragment = source.channels_.hasRecord() ? recordAt(source.channels_, rows_[s], i, sample.z)
+                                                         : fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
         fragment.identity = identityOf(source.index_, x, y, i - first);
         out.push_back(fragment);
       }

@@ -15,7 +15,10 @@ namespace pellucid {
 class DeepSource {
  public:
   // Throws what resolveDeep and DeepReader throw, and MeaningError when the display window is not the shot's.
-  DeepSource(const std::string& path, double metresPerUnit, const GBuffer& shot, std::uint32_t index);
+  //   depth  from the file's numbers
+  //   view   what --view says
+  DeepSource(const std::string& path, const DepthConverter& depth, const GBuffer& shot, std::uint32_t index,
+             const std::string& view = "");
   const std::string& path() const { return path_; }
   bool mayScatter() const { return channels_.hasRecord(); }  // samples say how they refract and diffuse
   std::vector<std::string> notes() const;                    // what was skipped or clamped so far
@@ -23,7 +26,7 @@ class DeepSource {
  private:
   friend class DeepMerge;
   std::string path_;
-  double metresPerUnit_;
+  DepthConverter depth_;
   std::uint32_t index_;
   DeepChannels channels_;
   DeepReader reader_;

@@ -18,6 +18,9 @@
 namespace pellucid {
 namespace {
 
+// Depth stays in the file's unit: nothing is compared with it.
+const DepthConverter kAsStored({}, PixelType::float32, std::nullopt, 1.0, nullptr, {}, "");
+
 struct Source {
   DeepChannels channels;
   std::unique_ptr<DeepReader> reader;
@@ -119,10 +122,12 @@ void flattenRows(std::vector<Source>& sources, const Window& band, FlatPicture& 
           for (const Source& source : sources)
             for (auto [i, end] = samplesAt(source.rows, x, y); i < end; ++i) {
               DeepSample sample;
-              if (sampleAt(source.channels, source.rows, i, 1.0, sample, oddities)) samples.push_back(sample);
+              if (sampleAt(source.channels, source.rows, i, kAsStored, x, y, sample, oddities))
+                samples.push_back(sample);
             }
           result = flattenSamples(samples);
-          frontZ = samples.empty() ? std::numeric_limits<float>::infinity() : static_cast<float>(samples[0].z);
+          const bool far = samples.empty() || samples[0].z >= kFarthest;
+          frontZ = far ? std::numeric_limits<float>::infinity() : static_cast<float>(samples[0].z);
         }
         flat.light.at(px, py) = glm::vec3(result.light);
         flat.opacity.at(px, py) = glm::vec4(result.opacity);
@@ -135,11 +140,14 @@ void flattenRows(std::vector<Source>& sources, const Window& band, FlatPicture& 
 
 }  // namespace
 
-FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most) {
+FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most, const std::string& view) {
   std::vector<Source> sources(paths.size());
   FlatPicture flat;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    sources[i].channels = resolveDeep(paths[i]);
+    const ExrDocument document = readExr(paths[i]);
+    sources[i].channels = resolveDeep(document, view);
+    if (i == 0) flat.like = document.parts[static_cast<std::size_t>(sources[0].channels.part)];
+    if (!sources[i].channels.note.empty()) flat.notes.push_back(sources[i].channels.note);
     sources[i].reader = std::make_unique<DeepReader>(paths[i], sources[i].channels.part, sources[i].channels.names);
     flat.colouredOpacity |= sources[i].channels.colouredOpacity;
     const Window& data = sources[i].reader->data();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "composite/deep/channels.h"
+#include "gbuffer/exr_document.h"
 #include "gbuffer/image.h"
 
 namespace pellucid {
@@ -19,11 +20,15 @@ struct FlatPicture {
   bool colouredOpacity = false;
   std::uint64_t samples = 0;
   DeepOddities oddities;
+  ExrPart like;                    // header of the first file
+  std::vector<std::string> notes;  // which parts were taken, where files have several
 };
 
 // Merges the files' samples over the union of their data windows and composites them front to back.
 //   most  deep samples held at once, beyond one row's
+//   view  what --view says
 // Throws what resolveDeep and DeepReader throw, MeaningError for display windows that differ.
-FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most = std::uint64_t{1} << 21);
+FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most = std::uint64_t{1} << 21,
+                        const std::string& view = "");
 
 }  // namespace pellucid

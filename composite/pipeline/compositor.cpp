@@ -233,7 +233,8 @@ std::vector<std::string> Compositor::write(const std::string& path, const Result
   std::vector<ExtraLayer> layers{beautyLayer(result.picture.rgba)};
   layers.insert(layers.end(), result.layers.begin(), result.layers.end());
   return writeLayers(path, gbuffer.display, gbuffer.data, layers, attributes,
-                     shot_->hasScene ? &shot_->camera : nullptr);
+                     shot_->hasScene ? &shot_->camera : nullptr, false,
+                     &shot_->opaque.document.parts[static_cast<std::size_t>(shot_->opaque.choice.beautyPart)]);
 }
 
 }  // namespace pellucid

@@ -29,7 +29,7 @@ std::unique_ptr<Lighting> lightShot(const Request& request, const Shot& shot, De
   }
   if (lighting->shadows.deepOpaque) lighting->picture.deepOpaque = lighting->shadows.deepOpaque.get();
   Air air(shot, lighting->shadows.maps, journal);
-  lighting->fog = placeFogOf(request.fog, shot, request.shot.read.metresPerUnit, air, journal);
+  lighting->fog = placeFogOf(request.fog, shot, request.shot.scene.metresPerUnit, air, journal);
   if (shot.hasScene) lighting->particles = lightInParticles(shot, air, request.particleLight, journal);
   lighting->surfaces = journal.time("shadows", [&] { return surfaceLight(lighting->shadows, shot); });
   return lighting;

@@ -107,10 +107,11 @@ ResolveSettings settingsOf(const PlanesRequest& request, const OitPlanes& planes
 ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   validate(request);
   ResolvedPlanes result;
-  result.opaque = journal.time("read picture", [&] { return readOpaque(request.opaque, request.read); });
-  journal.note(result.opaque.notes);
   std::vector<PassPlanes> passes = readAll(request, journal);
   const OitPlanes& first = passes[0].planes;
+  result.opaque = journal.time("read picture", [&] { return readOpaque(request.opaque, request.read, &first.camera); });
+  journal.note(understoodLines(result.opaque));
+  journal.note(result.opaque.notes);
   checkPlanes(request, first, result.opaque.gbuffer);
   result.info = first.info;
   GBuffer gbuffer = result.opaque.gbuffer;

@@ -8,6 +8,7 @@
 
 #include "composite/pipeline/same_cameras.h"
 #include "engine_bridge/embree/environment.h"
+#include "gbuffer/depth_kind.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/part_camera.h"
 
@@ -33,51 +34,72 @@ bool isDeep(const ExrDocument& document) {
   return std::all_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; });
 }
 
-// What a deep picture flattens to; its samples become shot.deepOpaque.
-OpaqueFile flattenedPicture(ExrDocument document, const ReadOptions& options, Shot& shot) {
-  const std::string path = document.path;
-  if (options.depthKind != "planar" || !options.depthChannel.empty() || !options.beautyLayer.empty())
+// How a deep file's depth is read: planar, as OpenEXR has it, unless --depth-kind says otherwise.
+DepthConverter deepDepth(const ReadOptions& options, const Camera* camera, const Window& display,
+                         const std::string& path) {
+  const DepthKind kind = options.depthKind.empty() ? DepthKind{} : parseDepthKind(options.depthKind);
+  if (kind.meaning == DepthMeaning::evidence)
     throw UsageError(
-        fmt::format("{}: --beauty, --depth and --depth-kind are for flat pictures: found deep samples, "
-                    "which have one colour and planar depth",
-                    path));
-  shot.deepOpaque = std::make_unique<DeepOpaque>(readDeepOpaque(path, options.metresPerUnit));
-  const DeepOpaque& samples = *shot.deepOpaque;
+        fmt::format("{}: --depth-kind: found auto, which is for flat pictures, expected a kind of deep "
+                    "samples: {}",
+                    path, depthKindForms()));
+  return {kind,    PixelType::float32,     options.farValue, options.metresPerUnit.value_or(1.0), camera,
+          display, path + ": deep samples"};
+}
+
+// A picture all of whose parts are deep becomes shot.deepOpaque, and what it flattens to.
+OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const Camera* camera, Shot& shot) {
+  if (!options.depthChannel.empty() || !options.beautyLayer.empty())
+    throw UsageError(
+        fmt::format("{}: --beauty and --depth are for flat pictures: found deep samples, which have one "
+                    "colour and one depth",
+                    document.path));
   OpaqueFile file;
-  file.metresPerUnit = options.metresPerUnit;
-  file.gbuffer.display = samples.display;
-  file.gbuffer.data = samples.data;
-  file.gbuffer.pixelAspect = document.parts[0].pixelAspect;
+  file.document = std::move(document);
+  file.metresPerUnit = options.metresPerUnit.value_or(1.0);
+  const DeepChannels channels = resolveDeep(file.document, options.view);
+  const ExrPart& part = file.document.parts[static_cast<std::size_t>(channels.part)];
+  file.choice.beautyPart = file.choice.depthPart = channels.part;
+  file.choice.depthChannel = channels.names[static_cast<std::size_t>(channels.z)];
+  file.gbuffer.display = part.display;
+  file.gbuffer.data = part.data;
+  file.gbuffer.pixelAspect = part.pixelAspect;
+  readCamera(part, file.metresPerUnit, file);
+  if (options.framingAlone) return file;
+  if (!camera && file.gbuffer.camera) camera = &*file.gbuffer.camera;
+  const DepthConverter depth = deepDepth(options, camera, part.display, file.document.path);
+  file.choice.depthKind = depthKindText(depth.kind());
+  shot.deepOpaque = std::make_unique<DeepOpaque>(readDeepOpaque(file.document.path, channels, depth));
+  const DeepOpaque& samples = *shot.deepOpaque;
   file.gbuffer.beauty = samples.flat;
   file.gbuffer.hasAlpha = true;
   file.gbuffer.viewZ = samples.farthest;
-  file.document = std::move(document);
-  readCamera(file.document.parts[0], options.metresPerUnit, file);
+  if (!channels.note.empty()) file.notes.push_back(channels.note);
   file.notes.push_back(
-      fmt::format("a deep picture: its {} samples hold transparent layers out one by one", samples.samples.size()));
+      fmt::format("a deep picture: its {} samples hold transparent layers out one by one; depth: {}, {}, 1 unit is "
+                  "{:g} m",
+                  samples.samples.size(), file.choice.depthChannel, depthKindWords(depth.kind()), file.metresPerUnit));
   if (samples.oddities.notFinite)
-    file.notes.push_back(fmt::format("{} deep samples are not finite and were skipped", samples.oddities.notFinite));
+    file.notes.push_back(fmt::format("{} deep samples are not numbers and were skipped", samples.oddities.notFinite));
   return file;
 }
 
-// Depths along rays and device depths are converted by the camera, which may be the scene's: it is chosen between.
+OpaqueFile interpretPicture(ExrDocument document, const ReadOptions& options, const Camera* camera, Shot& shot) {
+  return isDeep(document) ? interpretDeep(std::move(document), options, camera, shot)
+                          : interpretOpaque(std::move(document), options, camera);
+}
+
+// The camera is chosen before depth is converted, which may take it.
 void readPicture(const ShotRequest& request, Shot& shot) {
-  ExrDocument document = readExr(request.opaque);
-  const bool deep = isDeep(document);
-  ReadOptions options = request.read;
-  const bool depthNeedsCamera = !deep && (options.depthKind == "ray" || options.depthKind == "device");
-  if (depthNeedsCamera && shot.hasScene) options.depthKind = "planar";  // for the windows alone
-  shot.opaque = deep ? flattenedPicture(std::move(document), options, shot)
-                     : interpretOpaque(std::move(document), options, nullptr);
-  const GBuffer& gbuffer = shot.opaque.gbuffer;
-  if (shot.hasScene) {
-    shot.camera = chooseCamera(request.camera, gbuffer, shot.scene, request.opaque);
-    if (depthNeedsCamera) shot.opaque = interpretOpaque(std::move(shot.opaque.document), request.read, &shot.camera);
-    return;
-  }
+  ReadOptions framing = request.read;
+  framing.framingAlone = true;
+  OpaqueFile first = interpretPicture(readExr(request.opaque), framing, nullptr, shot);
   // Deep samples lie in the picture's own pixels: they need no camera, but fog does.
-  shot.hasCamera = gbuffer.camera || !std::holds_alternative<std::monostate>(request.camera);
-  if (shot.hasCamera) shot.camera = chooseCamera(request.camera, gbuffer, shot.scene, request.opaque);
+  shot.hasCamera = shot.hasScene || first.gbuffer.camera || !std::holds_alternative<std::monostate>(request.camera);
+  if (shot.hasCamera)
+    shot.camera = chooseCamera(request.camera, first.gbuffer, shot.scene, request.opaque, first.cameraRefusal);
+  shot.opaque =
+      interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr, shot);
 }
 
 void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal) {
@@ -116,11 +138,13 @@ bool isExrName(const std::string& path) {
 }
 
 Camera chooseCamera(const CameraChoice& choice, const GBuffer& gbuffer, const Scene& scene,
-                    const std::string& opaquePath) {
+                    const std::string& opaquePath, const std::string& refused) {
   if (const auto* placed = std::get_if<PlacedCamera>(&choice)) return placedCamera(*placed, gbuffer);
   if (const auto* named = std::get_if<NamedCamera>(&choice)) return namedCamera(named->name, scene, gbuffer);
   if (gbuffer.camera) return *gbuffer.camera;
   if (allOneCamera(scene.cameras, gbuffer)) return cameraOf(scene.cameras[0], gbuffer.display, gbuffer.pixelAspect);
+  if (scene.cameras.empty() && !refused.empty())
+    throw MeaningError(refused + "; found no glTF camera either, expected one or --camera");
   if (scene.cameras.empty())
     throw MeaningError(
         fmt::format("{}: no camera: found neither worldToCamera and worldToNDC attributes nor a glTF camera, expected "
@@ -158,11 +182,15 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   journal.time("read scene", [&] { shot->scene = loadScene(shot->geometry, options); });
   journal.note(shot->scene.notes);
   journal.time("read picture", [&] { readPicture(request, *shot); });
+  if (!shot->deepOpaque) journal.note(understoodLines(shot->opaque));
   journal.note(shot->opaque.notes);
   journal.time("read deep", [&] {
+    const GBuffer& picture = shot->opaque.gbuffer;
+    const Camera* camera = shot->hasCamera ? &shot->camera : nullptr;
     for (std::size_t i = 0; i < deep.size(); ++i)
-      shot->deep.push_back(std::make_unique<DeepSource>(deep[i], request.read.metresPerUnit, shot->opaque.gbuffer,
-                                                        static_cast<std::uint32_t>(i)));
+      shot->deep.push_back(std::make_unique<DeepSource>(deep[i],
+                                                        deepDepth(request.read, camera, picture.display, deep[i]),
+                                                        picture, static_cast<std::uint32_t>(i), request.read.view));
   });
   if (shot->hasScene) {
     std::optional<double> residual;

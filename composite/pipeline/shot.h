@@ -35,8 +35,9 @@ bool isExrName(const std::string& path);  // a deep file rather than glTF
 
 // The camera of a shot, by choice, file attribute or glTF, in this order.
 //   opaquePath  for messages
+//   refused     why the picture's own attributes were not taken, "" where it has none
 Camera chooseCamera(const CameraChoice& choice, const GBuffer& gbuffer, const Scene& scene,
-                    const std::string& opaquePath);
+                    const std::string& opaquePath, const std::string& refused = "");
 
 // Median colour of the pixels where nothing was hit: what the transparent things reflect when nobody says. Black
 // without such pixels.

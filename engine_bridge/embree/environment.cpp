@@ -8,6 +8,7 @@
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/exr_document.h"
+#include "gbuffer/producers.h"
 #include "shaders/shading.h"
 
 namespace pellucid {
@@ -100,7 +101,8 @@ float Environment::density(glm::vec3 towards) const {
 Environment readEnvironment(const std::string& path, std::vector<std::string>& notes) {
   const ExrDocument document = readExr(path);
   const std::vector<NamedChannel> channels = nameChannels(document);
-  const BeautyChannels beauty = resolveBeauty(document, channels, "", isBlender(document));
+  const Producer* producer = recogniseProducer(document, channels, "auto").row;
+  const BeautyChannels beauty = resolveBeauty(document, channels, "", "", producer);
   const ExrPart& part = document.parts[static_cast<std::size_t>(beauty.part)];
   Image<glm::vec3> map(part.data.width(), part.data.height());
   if (map.empty()) throw MeaningError(path + ": environment: found no pixels, expected a lat-long picture");

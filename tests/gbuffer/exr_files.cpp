@@ -49,6 +49,7 @@ exr::Header headerOf(const Part& part) {
   header.lineOrder() = part.lineOrder;
   if (!part.name.empty()) header.setName(part.name);
   if (!part.view.empty()) header.setView(part.view);
+  if (part.environmentMap >= 0) exr::addEnvmap(header, static_cast<exr::Envmap>(part.environmentMap));
   for (const auto& [name, text] : part.strings) header.insert(name, exr::StringAttribute(text));
   for (const auto& [name, numbers] : part.matrices) {
     IMATH_NAMESPACE::M44f m;

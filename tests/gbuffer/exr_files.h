@@ -46,6 +46,7 @@ struct Part {
   std::map<std::string, std::vector<float>> matrices;
   std::string view;
   double pixelAspect = 1.0;
+  int environmentMap = -1;  // attribute envmap: 0 lat-long, 1 cube
 };
 
 std::size_t pixelsOf(const Window& data);

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "exr_files.h"
+#include "gbuffer/deep_io.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::test {
@@ -45,6 +47,32 @@ TEST(Inspect, SaysWhatWasUnderstood) {
   for (const char* expected : {"shot.exr", "8 x 6 at (-1, 2)", "depth: depth.Z, planar", "beauty: R G B",
                                "nothing: 12 pixels", "camera: none"})
     EXPECT_NE(text.find(expected), std::string::npos) << expected << " in\n" << text;
+}
+
+TEST(Inspect, DescribesDeepPictures) {
+  TemporaryFolder folder;
+  DeepHeader header;
+  header.display = header.data = {0, 0, 2, 1};
+  header.channels = {"R", "G", "B", "A", "Z"};
+  Camera camera;
+  header.camera = &camera;
+  DeepWriter writer(folder.path("deep.exr"), header);
+  DeepRows rows;
+  rows.window = header.data;
+  rows.offsets = {0, 2, 3};
+  rows.channels = {{.1f, .2f, .3f}, {.1f, .2f, .3f}, {.1f, .2f, .3f}, {.5f, 1.0f, 1.0f}, {2.0f, 7.5f, INFINITY}};
+  writer.write(rows);
+  writer.finish();
+  const nlohmann::json report = inspectExr(folder.path("deep.exr"), {});
+  EXPECT_FALSE(report.contains("refusal")) << report.dump();
+  EXPECT_EQ(report["deep"]["samples"], 3);
+  EXPECT_EQ(report["deep"]["mostInAPixel"], 2);
+  EXPECT_EQ(report["depth"]["channel"], "Z");
+  const std::string text = inspectionText(report);
+  for (const char* expected : {"3 samples, at most 2", "colour: R G B", "opacity: A", "depth: Z, planar", "2 to 7.5",
+                               "camera: attribute worldToCamera"})
+    EXPECT_NE(text.find(expected), std::string::npos) << expected << " in\n" << text;
+  EXPECT_EQ(text.find("cannot be composited"), std::string::npos);
 }
 
 TEST(Inspect, SaysWhyAFileIsOfNoUse) {

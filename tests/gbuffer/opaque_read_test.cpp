@@ -101,7 +101,10 @@ TEST_F(OpaqueRead, FindsBeautyAndDepthOfEachRenderer) {
       EXPECT_NE(sentence.find("--depth"), std::string::npos) << sentence;
       continue;
     }
-    const OpaqueFile file = read({part(channels)});
+    ReadOptions named;  // of one value everywhere no picture tells what it means
+    named.depthKind = "planar";
+    named.metresPerUnit = 1.0;
+    const OpaqueFile file = read({part(channels)}, named);
     EXPECT_EQ(file.choice.beautyChannel[0], names.red);
     EXPECT_EQ(file.choice.depthChannel, names.depth);
     for (std::size_t i = 0; i < names.channels.size(); ++i) {
@@ -165,7 +168,7 @@ TEST_F(OpaqueRead, BlendersCompositeGivesWayToTheViewLayer) {
   EXPECT_EQ(read({layers}, blender).gbuffer.beauty.at(0, 0).r, 2.0f);
   layers.strings["BlenderMultiChannel"] = "Blender V2.55.1 and newer";
   EXPECT_EQ(read({layers}).gbuffer.beauty.at(0, 0).r, 2.0f);
-  blender.preset = "maya";
+  blender.preset = "paint";
   EXPECT_NE(refusal<UsageError>({layers}, blender), "");
 }
 

@@ -63,8 +63,9 @@ TEST_P(Shots, FittedWeightIsWithinTwoPercentOfTheBestListed) {
   // The same lists in this process: once for all weights.
   ASSERT_EQ(runProgram({"fragments", opaque, glass, "-o", folder + "/deep.exr"}).code, 0);
   const OpaqueFile file = readOpaque(opaque, {});
+  const DepthConverter metres({}, PixelType::float32, std::nullopt, 1.0, nullptr, file.gbuffer.display, "deep.exr");
   std::vector<std::unique_ptr<DeepSource>> sources;
-  sources.push_back(std::make_unique<DeepSource>(folder + "/deep.exr", 1.0, file.gbuffer, 0));
+  sources.push_back(std::make_unique<DeepSource>(folder + "/deep.exr", metres, file.gbuffer, 0));
   FragmentLists none, lists;
   none.window = file.gbuffer.data;
   none.solid = Image<glm::vec4>(none.window.width(), none.window.height(), glm::vec4(0, 0, 0, INFINITY));

@@ -1,0 +1,133 @@
+#include "gbuffer/deep_channels.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "gbuffer/channels.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+class Finder {
+ public:
+  Finder(const std::vector<NamedChannel>& named, const ExrPart& part, DeepChannels& channels)
+      : named_(named), part_(part), channels_(channels) {}
+  int optional(const std::string& name) {
+    const std::string found = nameOf(name);
+    if (found.empty()) return -1;
+    channels_.names.push_back(found);
+    return static_cast<int>(channels_.names.size()) - 1;
+  }
+  bool has(std::initializer_list<const char*> names) const {
+    return std::all_of(names.begin(), names.end(), [&](const char* name) { return !nameOf(name).empty(); });
+  }
+
+ private:
+  // The channel of that very name; else one of no layer in other letters; else the only one of any layer.
+  std::string nameOf(const std::string& name) const {
+    if (part_.find(name)) return name;
+    if (name.find('.') != std::string::npos) return "";
+    std::string plain, layered;
+    bool two = false;
+    for (const NamedChannel& channel : named_) {
+      if (channel.suffix != lower(name)) continue;
+      std::string& slot = channel.layers.empty() ? plain : layered;
+      two |= !slot.empty() && !channel.layers.empty();
+      slot = channel.channel->name;
+    }
+    return !plain.empty() ? plain : two ? "" : layered;
+  }
+  const std::vector<NamedChannel>& named_;
+  const ExrPart& part_;
+  DeepChannels& channels_;
+};
+
+std::string namesOf(const ExrPart& part) {
+  std::vector<std::string> names;
+  for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string titleOf(const ExrPart& part) {
+  return (part.name.empty() ? "without a name" : part.name) + (part.view.empty() ? "" : " (view " + part.view + ")");
+}
+
+// The part to read: the first deep one of the view.
+int deepPart(const ExrDocument& document, const std::string& view, std::string& note) {
+  int found = -1, deep = 0;
+  std::string all;
+  for (std::size_t i = 0; i < document.parts.size(); ++i) {
+    const ExrPart& part = document.parts[i];
+    if (!part.deep) continue;
+    ++deep;
+    all += (all.empty() ? "" : ", ") + titleOf(part);
+    if (found < 0 && (view.empty() || part.view == view)) found = static_cast<int>(i);
+  }
+  if (deep == 0)
+    throw MeaningError(fmt::format("{}: found a flat picture ({}), expected deep samples", document.path,
+                                   document.parts.empty() ? "" : namesOf(document.parts[0])));
+  if (found < 0)
+    throw MeaningError(
+        fmt::format("{}: --view: found the deep parts {}, expected one of view {}", document.path, all, view));
+  if (deep > 1 && view.empty())
+    note = fmt::format("{}: of {} deep parts {} is taken; --view names another", document.path, deep,
+                       titleOf(document.parts[static_cast<std::size_t>(found)]));
+  return found;
+}
+
+}  // namespace
+
+DeepChannels resolveDeep(const ExrDocument& document, const std::string& view) {
+  const std::string& path = document.path;
+  DeepChannels channels;
+  channels.part = deepPart(document, view, channels.note);
+  const ExrPart& part = document.parts[static_cast<std::size_t>(channels.part)];
+  std::vector<NamedChannel> named = nameChannels(document);
+  std::erase_if(named, [&](const NamedChannel& channel) { return channel.part != channels.part; });
+  // Parts' names are layers to nameChannels; inside of one part they tell nothing apart.
+  if (!part.name.empty())
+    for (NamedChannel& channel : named)
+      if (channel.channel->name.find('.') == std::string::npos) channel.layers.clear();
+  Finder find(named, part, channels);
+  if (!find.has({"Z", "R", "G", "B"}))
+    throw MeaningError(
+        fmt::format("{}: found deep channels {}, expected Z, R, G, B and an opacity", path, namesOf(part)));
+  channels.z = find.optional("Z");
+  channels.zBack = find.optional("ZBack");
+  channels.light = {find.optional("R"), find.optional("G"), find.optional("B")};
+  channels.alpha = find.optional("A");
+  channels.colouredOpacity = true;
+  if (find.has({"AR", "AG", "AB"})) {
+    channels.opacity = {find.optional("AR"), find.optional("AG"), find.optional("AB")};
+  } else if (find.has({"RA", "GA", "BA"})) {
+    channels.opacity = {find.optional("RA"), find.optional("GA"), find.optional("BA")};
+  } else if (channels.alpha >= 0) {
+    channels.opacity = {channels.alpha, channels.alpha, channels.alpha};
+    channels.colouredOpacity = false;
+  } else {
+    throw MeaningError(
+        fmt::format("{}: found deep channels {}, expected A, or AR, AG, AB, or RA, GA, BA", path, namesOf(part)));
+  }
+  if (find.has({"oit.coverage", "oit.t.R", "oit.t.G", "oit.t.B", "oit.delta.X", "oit.delta.Y", "oit.D2"})) {
+    channels.coverage = find.optional("oit.coverage");
+    channels.transmission = {find.optional("oit.t.R"), find.optional("oit.t.G"), find.optional("oit.t.B")};
+    channels.offset = {find.optional("oit.delta.X"), find.optional("oit.delta.Y")};
+    channels.variance = find.optional("oit.D2");
+  }
+  return channels;
+}
+
+DeepChannels resolveDeep(const std::string& path, const std::string& view) {
+  return resolveDeep(readExr(path), view);
+}
+
+}  // namespace pellucid

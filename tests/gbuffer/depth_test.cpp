@@ -1,0 +1,120 @@
+// Depth as it is stored: every kind to planar metres, what is said of it, and what is warned of.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gbuffer/depth_kind.h"
+#include "gbuffer/errors.h"
+#include "gbuffer/opaque_io.h"
+#include "room.h"
+
+namespace pellucid::test {
+namespace {
+
+bool noted(const OpaqueFile& file, const std::string& words) {
+  for (const std::string& note : file.notes)
+    if (note.find(words) != std::string::npos) return true;
+  return false;
+}
+
+class DepthKinds : public testing::Test {
+ protected:
+  template <class F>
+  OpaqueFile read(F of, const ReadOptions& options = {}, bool withCamera = true) {
+    Part part = room_.part(withCamera);
+    part.planes.push_back(floatPlane("Z", room_.depth(of)));
+    writeFile(folder_.path("shot.exr"), {part});
+    return readOpaque(folder_.path("shot.exr"), options);
+  }
+  double worst(const OpaqueFile& file) const {
+    double most = 0;
+    for (std::size_t i = 0; i < room_.z.size(); ++i)
+      most = std::max(most, std::abs(static_cast<double>(file.gbuffer.viewZ[i]) / room_.z[i] - 1));
+    return most;
+  }
+  Room room_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(DepthKinds, EachBecomesPlanarMetres) {
+  const auto kind = [](const char* text, double unit = 1) {
+    ReadOptions options;
+    options.depthKind = text;
+    options.metresPerUnit = unit;
+    return options;
+  };
+  EXPECT_LT(worst(read([](double z, double) { return -z; }, kind("negative"))), 1e-6);
+  EXPECT_LT(worst(read([](double z, double) { return (z - .5) / 39.5; }, kind("normalised:0.5:40"))), 1e-5);
+  EXPECT_LT(worst(read([](double z, double) { return 1 - (z - .5) / 39.5; }, kind("normalised:0.5:40:inverted"))),
+            1e-5);
+  EXPECT_LT(worst(read([](double z, double) { return (100 * z - 50) / 3950; }, kind("normalised:50:4000", .01))), 1e-5);
+  ReadOptions device = kind("device:reversed");
+  Camera camera = room_.camera;
+  camera.rangeNear = 0.5;
+  camera.rangeFar = 100;
+  Part part = room_.part(false);
+  part.planes.push_back(floatPlane("Z", room_.depth([](double z, double) { return (.5 * 100 / z - .5) / 99.5; })));
+  writeFile(folder_.path("shot.exr"), {part});
+  EXPECT_LT(worst(readOpaque(folder_.path("shot.exr"), device, &camera)), 1e-5);
+}
+
+TEST_F(DepthKinds, LimitsOfARampAreNothing) {
+  ReadOptions options;
+  options.depthKind = "normalised:2:4";
+  const GBuffer far = read([](double, double) { return 1.0; }, options).gbuffer;
+  EXPECT_FALSE(std::isfinite(far.viewZ[0]));
+  EXPECT_EQ(read([](double, double) { return 0.0; }, options).gbuffer.viewZ[0], 2.0f) << "at the near limit";
+  options.depthKind = "normalised:2:4:inverted";
+  EXPECT_FALSE(std::isfinite(read([](double, double) { return 0.0; }, options).gbuffer.viewZ[0]));
+  EXPECT_EQ(read([](double, double) { return 1.0; }, options).gbuffer.viewZ[0], 2.0f);
+}
+
+TEST(DepthKindText, IsReadAndWritten) {
+  for (const char* text : {"planar", "ray", "inverse", "device", "device:reversed", "negative", "normalised:0:40",
+                           "normalised:0.5:40:inverted"})
+    EXPECT_EQ(depthKindText(parseDepthKind(text)), text);
+  EXPECT_EQ(parseDepthKind("auto").meaning, DepthMeaning::evidence);
+  for (const char* text : {"", "radial", "planar:", "planar:1", "device:forward", "normalised", "normalised:1",
+                           "normalised:4:2", "normalised:-1:2", "normalised:1:x", "normalised:1:2:upside", "auto:1",
+                           "normalised:1:2:inverted:", "planar|radial"})
+    EXPECT_THROW(parseDepthKind(text), UsageError) << text;
+}
+
+TEST_F(DepthKinds, WhatWasUnderstoodIsSaid) {
+  const std::vector<std::string> lines = understoodLines(read([](double z, double) { return z; }));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].find("picture: R G B"), 0u) << lines[0];
+  for (const char* words : {"depth: Z, planar depth (planar), ", " to ", "1 unit is 1 m", "0% of the pixels"})
+    EXPECT_NE(lines[1].find(words), std::string::npos) << lines[1];
+}
+
+TEST_F(DepthKinds, EvidenceAgainstAReadingIsSaid) {
+  const OpaqueFile planar = read([](double z, double) { return z; });
+  EXPECT_FALSE(noted(planar, "--depth-kind")) << planar.notes[0];
+  EXPECT_TRUE(noted(read([](double z, double ray) { return z * ray; }), "--depth-kind ray?"));
+  EXPECT_FALSE(noted(read([](double z, double ray) { return z * ray; }, {}, false), "--depth-kind ray?"));
+  EXPECT_TRUE(noted(read([](double z, double) { return 50 / z; }), "--depth-kind inverse?"));
+  EXPECT_TRUE(noted(read([](double z, double) { return z / 100; }), "--depth-kind normalised:NEAR:FAR"));
+  ReadOptions told;
+  told.depthKind = "planar";
+  EXPECT_TRUE(read([](double z, double) { return z / 100; }, told).notes.empty()) << "who says so is not warned";
+  const OpaqueFile negative = read([](double z, double) { return -z; });
+  EXPECT_TRUE(noted(negative, "negative"));
+  EXPECT_LT(worst(negative), 1e-6);
+}
+
+TEST_F(DepthKinds, EnvironmentMapsAreNoPictures) {
+  Part part = room_.part(true);
+  part.planes.push_back(floatPlane("Z", room_.depth([](double z, double) { return z; })));
+  part.environmentMap = 0;
+  writeFile(folder_.path("around.exr"), {part});
+  try {
+    readOpaque(folder_.path("around.exr"), {});
+    FAIL() << "a lat-long map has no camera";
+  } catch (const MeaningError& error) {
+    EXPECT_NE(std::string(error.what()).find("envmap: found a lat-long map"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace pellucid::test

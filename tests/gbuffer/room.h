@@ -1,0 +1,58 @@
+// A room as a renderer sees it: a floor, a back wall and a slanted board, planar depth in closed form, and its camera
+// as EXR states it.
+#pragma once
+#include <cmath>
+#include <vector>
+
+#include "exr_files.h"
+#include "gbuffer/camera.h"
+
+namespace pellucid::test {
+
+struct Room {
+  static constexpr int kWidth = 96, kHeight = 64;
+  Camera camera;
+  std::vector<double> z, ray;  // planar depth, and distance over planar depth; row by row
+
+  //   aside  the camera is turned, so that no plane faces it
+  explicit Room(bool aside = true, double focal = 1.2) {
+    camera.focal = {focal, focal * kWidth / kHeight};
+    const double turn = aside ? 0.3 : 0.0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const double a = ((x + 0.5) / kWidth * 2 - 1) / camera.focal.x;
+        const double b = (1 - (y + 0.5) / kHeight * 2) / camera.focal.y;
+        // n . (a, b, 1) z = d of each plane, before the eye; the nearest is seen.
+        double nearest = INFINITY;
+        const double planes[][4] = {{std::sin(turn), 0, std::cos(turn), 6}, {0, -1, 0, 1.2}, {0.6, 0.2, 0.8, 5.5}};
+        for (const auto& p : planes) {
+          const double along = p[0] * a + p[1] * b + p[2];
+          if (along > 1e-6) nearest = std::min(nearest, p[3] / along);
+        }
+        z.push_back(nearest);
+        ray.push_back(std::sqrt(1 + a * a + b * b));
+      }
+  }
+  template <class F>
+  std::vector<float> depth(F of) const {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < z.size(); ++i) values.push_back(static_cast<float>(of(z[i], ray[i])));
+    return values;
+  }
+  // Colour, and the camera's attributes when wanted.
+  Part part(bool withCamera, const std::string& layer = "") const {
+    Part made;
+    made.display = made.data = {0, 0, kWidth, kHeight};
+    for (const char* name : {"R", "G", "B"})
+      made.planes.push_back(constantPlane(layer + name, exr::HALF, 0.5f, z.size()));
+    if (withCamera) {
+      float matrices[2][4][4];
+      cameraToExr(camera, matrices[0], matrices[1]);
+      made.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);
+      made.matrices["worldToNDC"].assign(&matrices[1][0][0], &matrices[1][0][0] + 16);
+    }
+    return made;
+  }
+};
+
+}  // namespace pellucid::test
