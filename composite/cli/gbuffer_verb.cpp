@@ -20,7 +20,7 @@ constexpr int kMostSamples = 65536;
 
 struct GbufferFlags {
   std::vector<std::string> scenes;
-  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter;
+  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter, assetRoot;
   std::optional<int> samples;
   std::optional<double> aoRadius;
   std::vector<std::string> overrides;
@@ -110,6 +110,7 @@ void gbuffer(const GbufferFlags& flags) {
   options.metresPerUnit = flags.unit;
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
+  options.assetRoot = flags.assetRoot;
   const Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
   say(scene.notes);
   GBuffer frame;
@@ -167,6 +168,8 @@ void addGbuffer(CLI::App& app) {
   verb->add_option("--set", flags->overrides,
                    "MATERIAL.key=value: thin, collimation, coverage, additive, lowResolution, castsShadow")
       ->allow_extra_args(false);
+  verb->add_option("--asset-root", flags->assetRoot,
+                   "Folder whose files a glTF may name besides those under its own folder");
   verb->add_option("--unit", flags->unit, "Metres per scene unit")->check(CLI::PositiveNumber)->capture_default_str();
   verb->add_option("--lumens-per-watt", flags->lumensPerWatt, "glTF lights are photometric, renders are not")
       ->check(CLI::PositiveNumber)

@@ -26,6 +26,8 @@ const std::vector<HelpRow> kRows{
     {"--size", kInput, "WIDTHxHEIGHT"},
     {"--unit", kInput, "METRES"},
     {"--scene-unit", kInput, "METRES"},
+    {"--asset-root", kInput, "FOLDER"},
+    {"--held-out-by", kInput, "PLANES.exr"},
     {"--devices", kInput, ""},
     {"--layer-beauty", kInput, "LAYER"},
     {"--layer-depth", kInput, "CHANNEL"},

@@ -12,7 +12,7 @@
 namespace pellucid::cli {
 
 struct SceneFlags {
-  std::string camera, environment;
+  std::string camera, environment, assetRoot;
   std::vector<std::string> overrides;
   double lumensPerWatt = 683.0, unit = 1.0;  // metres in one unit of the glTF
   std::string textureFilter = "mipmap", mask = "smooth", order = "file", budget = "256M";

@@ -125,7 +125,7 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   const bool onDevice = request.onDevice && settings.formula == SumFormula::mean;
   if (request.onDevice && !onDevice)
     journal.note(
-        fmt::format("--resolve gl: planes of --method {} are resolved on the CPU: the device has the weighted "
+        fmt::format("--resolve gl: planes of method {} are resolved on the CPU: the device has the weighted "
                     "mean alone",
                     first.info.method));
   ResolvePass* resolver = onDevice ? &device.resolver(journal) : nullptr;

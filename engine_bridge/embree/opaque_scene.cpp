@@ -72,7 +72,7 @@ OpaqueScene::OpaqueScene(const Scene& scene, const Camera& camera)
     const Instance& instance = scene.instances[i];
     if (!isOpaque(scene, instance)) continue;
     const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
-    const bool singleSided = !scene.materials[static_cast<std::size_t>(primitive.material)].doubleSided;
+    const bool singleSided = !scene.materials[static_cast<std::size_t>(primitive.material)].bothSides();
     const std::size_t triangles = primitive.indices.size() / 3;
     triangles_ += triangles;
     const glm::dmat4& transform = placed_[i].viewFromObject;

@@ -10,6 +10,7 @@
 #include "engine_bridge/embree/transparent_scene.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/shadow_maps.h"
+#include "shaders/mask.h"
 
 namespace pellucid {
 namespace {
@@ -65,20 +66,29 @@ struct RayFragments::Impl {
              std::vector<Crossing>& crossings, Row& out) const;
 };
 
-// fwidth(alpha) as GL takes it: differences between neighbours of the pixel's 2x2 quad, on the triangle's plane.
+// The width of a mask's rim as GL takes it, by differences between neighbours of the pixel's 2x2 quad, on the
+// triangle's plane.
 float RayFragments::Impl::alphaWidth(const Crossing& crossing, const Primitive& primitive, int x, int y,
                                      const SurfaceSampler& sampler, const PassSettings& settings) const {
   const Placed& placed = traced.placed(crossing.instance);
   const Corners corners = cornersOf(primitive, placed.viewFromObject, crossing.triangle);
-  const auto alpha = [&](int atX, int atY) {
+  struct Here {
+    float alpha = 0.0f;
+    glm::vec2 texel{0.0f};
+  };
+  const auto at = [&](int atX, int atY) {
     const std::optional<TriangleHit> hit = intersectPlane(rayOf(atX, atY, settings), corners);
-    if (!hit) return 0.0f;
-    return sampler.alphaAt(primitive.material, attributesAt(primitive, placed, crossing.triangle, *hit));
+    if (!hit) return Here{};
+    const Attributes attributes = attributesAt(primitive, placed, crossing.triangle, *hit);
+    return Here{sampler.alphaAt(primitive.material, attributes), sampler.baseTexelAt(primitive.material, attributes)};
   };
   // Quads count from the corner of the data window.
   const int left = x - ((x - gbuffer.data.x0) & 1), top = y - ((y - gbuffer.data.y0) & 1);
-  const float across = alpha(left + 1, y) - alpha(left, y), down = alpha(x, top + 1) - alpha(x, top);
-  const float width = std::abs(across) + std::abs(down);
+  const Here left0 = at(left, y), right0 = at(left + 1, y), top0 = at(x, top), bottom0 = at(x, top + 1);
+  const float fwidth = std::abs(right0.alpha - left0.alpha) + std::abs(bottom0.alpha - top0.alpha);
+  const float texels =
+      shading::texelsAcross(right0.texel - left0.texel, bottom0.texel - top0.texel, settings.footprint);
+  const float width = settings.footprint * fwidth * shading::rimLeft(texels);
   return std::isfinite(width) ? width : kInfinity;
 }
 

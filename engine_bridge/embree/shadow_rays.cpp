@@ -94,7 +94,7 @@ glm::vec3 ShadowRays::Impl::visibility(std::size_t light, const glm::dvec3& poin
     const Material& material = scene.materials[static_cast<std::size_t>(
         scene.primitives[static_cast<std::size_t>(instance.primitive)].material)];
     for (; begin < end; ++begin) {
-      const bool turned = crossings[begin].hit.front && faced && !material.doubleSided;
+      const bool turned = crossings[begin].hit.front && faced && !material.bothSides();
       if (material.castsShadow && !turned)
         passed *= glm::dvec3(1.0) - glm::dvec3(density(crossings[begin], arriving.toLight));
     }

@@ -1,5 +1,7 @@
 #include "engine_bridge/embree/surface_sampler.h"
 
+#include "engine_bridge/scene/foliage.h"
+
 namespace pellucid::rays {
 Attributes attributesAt(const Primitive& primitive, const Placed& placed, std::size_t triangle,
                         const TriangleHit& hit) {
@@ -15,7 +17,7 @@ Attributes attributesAt(const Primitive& primitive, const Placed& placed, std::s
   const glm::vec3 normal = between([](const Vertex& vertex) { return vertex.normal; });
   result.uv[0] = between([](const Vertex& vertex) { return vertex.uv[0]; });
   result.uv[1] = between([](const Vertex& vertex) { return vertex.uv[1]; });
-  result.colour = between([](const Vertex& vertex) { return vertex.colour; });
+  result.colour = between([](const Vertex& vertex) { return vertex.colour; }) * placed.colour;
   result.normal = placed.normalFromObject * normal;
   result.tangent = glm::vec4(0.0f);
   if (corners[0]->tangent != glm::vec2(0.0f)) {
@@ -26,27 +28,47 @@ Attributes attributesAt(const Primitive& primitive, const Placed& placed, std::s
 }
 
 SurfaceSampler::SurfaceSampler(const Scene& scene, TexelFilter filter) : scene_(scene), filter_(filter) {
-  for (const Material& material : scene.materials) blocks_.push_back(materialBlock(material));
+  for (const Material& material : scene.materials) {
+    blocks_.push_back(materialBlock(material));
+    weights_.push_back(weighsByAlpha(material, scene) ? TexelWeight::byAlpha : TexelWeight::plain);
+  }
 }
 
-glm::vec4 SurfaceSampler::texel(const TextureRef& reference, int slot, const MaterialBlock& block,
-                                const Attributes& attributes) const {
+namespace {
+
+glm::vec2 uvOf(const TextureRef& reference, int slot, const MaterialBlock& block, const Attributes& attributes) {
   const glm::vec4 u = block.uvTransforms[2 * slot], v = block.uvTransforms[2 * slot + 1];
   const glm::vec3 uv1(attributes.uv[reference.texCoord == 0 ? 0 : 1], 1.0f);
-  const glm::vec2 uv(glm::dot(glm::vec3(u), uv1), glm::dot(glm::vec3(v), uv1));
-  return sampleTexture(scene_.textures[static_cast<std::size_t>(reference.texture)], uv, filter_);
+  return {glm::dot(glm::vec3(u), uv1), glm::dot(glm::vec3(v), uv1)};
 }
 
-glm::vec4 SurfaceSampler::baseAt(const Material& material, const MaterialBlock& block,
-                                 const Attributes& attributes) const {
+}  // namespace
+
+glm::vec4 SurfaceSampler::texel(const TextureRef& reference, int slot, const MaterialBlock& block,
+                                const Attributes& attributes, TexelWeight weight) const {
+  return sampleTexture(scene_.textures[static_cast<std::size_t>(reference.texture)],
+                       uvOf(reference, slot, block, attributes), filter_, weight);
+}
+
+glm::vec4 SurfaceSampler::baseAt(std::size_t index, const Attributes& attributes) const {
+  const Material& material = scene_.materials[index];
+  const MaterialBlock& block = blocks_[index];
   glm::vec4 base = block.baseColor * attributes.colour;
-  if (material.baseColorTexture.texture >= 0) base *= texel(material.baseColorTexture, 0, block, attributes);
+  if (material.baseColorTexture.texture >= 0)
+    base *= texel(material.baseColorTexture, 0, block, attributes, weights_[index]);
   return base;
 }
 
 float SurfaceSampler::alphaAt(int material, const Attributes& attributes) const {
-  const auto index = static_cast<std::size_t>(material);
-  return baseAt(scene_.materials[index], blocks_[index], attributes).a;
+  return baseAt(static_cast<std::size_t>(material), attributes).a;
+}
+
+glm::vec2 SurfaceSampler::baseTexelAt(int index, const Attributes& attributes) const {
+  const Material& material = scene_.materials[static_cast<std::size_t>(index)];
+  if (material.baseColorTexture.texture < 0) return glm::vec2(0.0f);
+  const Image<glm::vec4>& texels = scene_.textures[static_cast<std::size_t>(material.baseColorTexture.texture)].texels;
+  return uvOf(material.baseColorTexture, 0, blocks_[static_cast<std::size_t>(index)], attributes) *
+         glm::vec2(texels.width(), texels.height());
 }
 
 glm::vec3 SurfaceSampler::normalAt(int index, const Attributes& attributes, bool front, glm::vec3 toEye) const {
@@ -62,7 +84,7 @@ shading::Surface SurfaceSampler::surfaceAt(int index, const Attributes& attribut
   const Material& material = scene_.materials[static_cast<std::size_t>(index)];
   const MaterialBlock& block = blocks_[static_cast<std::size_t>(index)];
   shading::MaterialPoint point;
-  point.base = baseAt(material, block, attributes);
+  point.base = baseAt(static_cast<std::size_t>(index), attributes);
   point.emission = glm::vec3(block.emission);
   point.metallic = block.emission.a;
   point.roughness = block.interface_.r;

@@ -28,6 +28,8 @@ class SurfaceSampler {
 
   // Alpha before the mask's cut, base colour, texture and vertex colour together.
   float alphaAt(int material, const Attributes& attributes) const;
+  // Where it reads the base colour's texture, in texels.
+  glm::vec2 baseTexelAt(int material, const Attributes& attributes) const;
   // Unit, on the side of the eye, normal texture included.
   glm::vec3 normalAt(int material, const Attributes& attributes, bool front, glm::vec3 toEye) const;
   //   alphaWidth  how much alpha changes over one pixel, for the smooth rims of masks
@@ -35,13 +37,14 @@ class SurfaceSampler {
                              float alphaWidth) const;
 
  private:
-  glm::vec4 texel(const TextureRef& reference, int slot, const MaterialBlock& block,
-                  const Attributes& attributes) const;
-  glm::vec4 baseAt(const Material& material, const MaterialBlock& block, const Attributes& attributes) const;
+  glm::vec4 texel(const TextureRef& reference, int slot, const MaterialBlock& block, const Attributes& attributes,
+                  TexelWeight weight = TexelWeight::plain) const;
+  glm::vec4 baseAt(std::size_t material, const Attributes& attributes) const;
 
   const Scene& scene_;
   TexelFilter filter_;
   std::vector<MaterialBlock> blocks_;
+  std::vector<TexelWeight> weights_;  // of base colours, by material
 };
 
 }  // namespace pellucid::rays

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shaders/mask.h"
+
 namespace pellucid::rays {
 namespace {
 
@@ -26,7 +28,7 @@ int wrapped(float texel, int size, Wrap wrap) {
 
 }  // namespace
 
-glm::vec4 sampleTexture(const Texture& texture, glm::vec2 uv, TexelFilter filter) {
+glm::vec4 sampleTexture(const Texture& texture, glm::vec2 uv, TexelFilter filter, TexelWeight weight) {
   const Image<glm::vec4>& texels = texture.texels;
   const int width = texels.width(), height = texels.height();
   const glm::vec2 at = uv * glm::vec2(static_cast<float>(width), static_cast<float>(height));
@@ -36,9 +38,14 @@ glm::vec4 sampleTexture(const Texture& texture, glm::vec2 uv, TexelFilter filter
   const float fx = at.x - 0.5f - left, fy = at.y - 0.5f - top;
   const int x0 = wrapped(left, width, texture.wrapS), x1 = wrapped(left + 1.0f, width, texture.wrapS);
   const int y0 = wrapped(top, height, texture.wrapT), y1 = wrapped(top + 1.0f, height, texture.wrapT);
-  const glm::vec4 upper = texels.at(x0, y0) * (1.0f - fx) + texels.at(x1, y0) * fx;
-  const glm::vec4 lower = texels.at(x0, y1) * (1.0f - fx) + texels.at(x1, y1) * fx;
-  return upper * (1.0f - fy) + lower * fy;
+  const auto stored = [&](int x, int y) {
+    const glm::vec4 texel = texels.at(x, y);
+    return weight == TexelWeight::plain ? texel : glm::vec4(glm::vec3(texel) * texel.a, texel.a);
+  };
+  const glm::vec4 upper = stored(x0, y0) * (1.0f - fx) + stored(x1, y0) * fx;
+  const glm::vec4 lower = stored(x0, y1) * (1.0f - fx) + stored(x1, y1) * fx;
+  const glm::vec4 filtered = upper * (1.0f - fy) + lower * fy;
+  return weight == TexelWeight::plain ? filtered : shading::unweighted(filtered);
 }
 
 }  // namespace pellucid::rays

@@ -8,7 +8,11 @@ namespace pellucid::rays {
 
 enum class TexelFilter { bilinear, nearest };
 
+// Whether colours are filtered weighted by alpha.
+enum class TexelWeight { plain, byAlpha };
+
 // Level 0 at uv, wrapped as the texture says. A texture whose file asks for `nearest` gets it.
-glm::vec4 sampleTexture(const Texture& texture, glm::vec2 uv, TexelFilter filter);
+glm::vec4 sampleTexture(const Texture& texture, glm::vec2 uv, TexelFilter filter,
+                        TexelWeight weight = TexelWeight::plain);
 
 }  // namespace pellucid::rays

@@ -68,7 +68,7 @@ TransparentScene::TransparentScene(const Scene& scene, const Camera& camera)
     const Material& material = scene.materials.at(static_cast<std::size_t>(primitive.material));
     // Particles have no surface: what they hide of a light is their grid's (scene/particle_grid.h).
     if (material.transparent() && !primitive.points)
-      parts_.push_back({this, static_cast<std::uint32_t>(i), !material.doubleSided});
+      parts_.push_back({this, static_cast<std::uint32_t>(i), !material.bothSides()});
   }
   for (Part& part : parts_) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);

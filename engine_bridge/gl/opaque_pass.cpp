@@ -119,7 +119,9 @@ void OpaquePass::collect() {
       drawn_.push_back({static_cast<int>(number), coloured, {}, {}});
       bytes += primitive.vertices.size() * sizeof(Vertex) + primitive.indices.size() * sizeof(std::uint32_t);
     }
-    drawn_[static_cast<std::size_t>(place[number])].instances.push_back(i);
+    Drawn& drawn = drawn_[static_cast<std::size_t>(place[number])];
+    drawn.vertexColours = drawn.vertexColours || scene_.instances[i].colour != glm::vec4(1.0f);
+    drawn.instances.push_back(i);
   }
   resident_ = bytes <= settings_.budgetBytes;
   if (resident_)
@@ -185,7 +187,7 @@ void OpaquePass::sweep(const char* output, const PunctualLight* light, GLsizei o
     glNamedBufferData(materialBuffer_.name(), sizeof block, &block, GL_DYNAMIC_DRAW);
     const UploadedPrimitive passing = resident_ ? UploadedPrimitive{} : upload(primitive);
     glBindVertexArray(resident_ ? drawn.uploaded.array.name() : passing.array.name());
-    if (material.doubleSided)
+    if (material.bothSides())
       glDisable(GL_CULL_FACE);
     else
       glEnable(GL_CULL_FACE);
@@ -195,6 +197,7 @@ void OpaquePass::sweep(const char* output, const PunctualLight* light, GLsizei o
       glUniformMatrix4fv(program.viewFromObject, 1, GL_FALSE, &position[0][0]);
       glUniformMatrix3fv(program.normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
       glUniform1f(program.thicknessScale, placed.thicknessScale);
+      glUniform4fv(program.instanceColour, 1, &scene_.instances[instance].colour[0]);
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(primitive.indices.size() / 3 * 3), GL_UNSIGNED_INT, nullptr);
     }
   }

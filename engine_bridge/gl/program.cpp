@@ -44,6 +44,7 @@ Program buildProgram(const std::string& vertexStage, const std::string& fragment
   program.viewFromObject = glGetUniformLocation(name, "viewFromObject");
   program.normalFromObject = glGetUniformLocation(name, "normalFromObject");
   program.thicknessScale = glGetUniformLocation(name, "thicknessScale");
+  program.instanceColour = glGetUniformLocation(name, "instanceColour");
   program.instanceIdentity = glGetUniformLocation(name, "instanceIdentity");
   program.pointScale = glGetUniformLocation(name, "pointScale");
   program.turn = glGetUniformLocation(name, "turn");

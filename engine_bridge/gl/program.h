@@ -11,7 +11,7 @@ namespace pellucid::gl {
 struct Program {
   ProgramName name;
   // Locations of the plain uniforms, -1 where this permutation has no use for one; GL ignores writes to -1.
-  GLint viewFromObject = -1, normalFromObject = -1, thicknessScale = -1;
+  GLint viewFromObject = -1, normalFromObject = -1, thicknessScale = -1, instanceColour = -1;
   GLint instanceIdentity = -1, turn = -1, pointScale = -1;
 };
 

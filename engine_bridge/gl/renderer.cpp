@@ -81,6 +81,7 @@ void Renderer::classify() {
     float& scale = largestScale[static_cast<std::size_t>(scene_.instances[i].primitive)];
     scale = std::max(scale, placed_[i].thicknessScale);
   }
+  const std::vector<ColourRange> drawnColours = coloursDrawn(scene_);
   std::vector<bool> infers;
   for (const Material& material : scene_.materials)
     infers.push_back(material.transparent() && infersOcclusion(material, scene_));
@@ -89,7 +90,7 @@ void Renderer::classify() {
     const Material& material = scene_.materials.at(static_cast<std::size_t>(primitive.material));
     Shader shader{};
     if (material.transparent() && largestScale[i] >= 0.0f) {
-      const ColourRange colours = coloursOf(primitive);
+      const ColourRange& colours = drawnColours[i];
       shader.vertexColours = colours.least != glm::vec4(1.0f) || colours.most != glm::vec4(1.0f);
       shader.canBeSolid = canBeSolid(material, colours, textures_, largestScale[i]);
       Needs& needs = needs_[material.lowResolution ? 1 : 0];
@@ -187,9 +188,11 @@ void Renderer::uploadOccluders(const Window& superTile) {
 
 void Renderer::describeSurfaces() {
   for (std::size_t i = 0; i < shaders_.size(); ++i) {
+    const Material& material = scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)];
     shaders_[i].surface =
-        surfaceDefines(scene_.materials[static_cast<std::size_t>(scene_.primitives[i].material)],
-                       shaders_[i].vertexColours, features_, shaders_[i].infers, scene_.primitives[i].points);
+        surfaceDefines(material, shaders_[i].vertexColours, features_, shaders_[i].infers, scene_.primitives[i].points);
+    for (std::string& define : textures_.defines(material, settings_.filter))
+      shaders_[i].surface.push_back(std::move(define));
     std::fill(std::begin(shaders_[i].programs), std::end(shaders_[i].programs), nullptr);
   }
 }
@@ -366,13 +369,14 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
                         static_cast<GLintptr>(static_cast<std::size_t>(boundMaterial) * materialStride_),
                         sizeof(MaterialBlock));
     }
-    if (material.doubleSided)
+    if (material.bothSides())
       glDisable(GL_CULL_FACE);
     else
       glEnable(GL_CULL_FACE);
     glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
     glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
     glUniform1f(program->thicknessScale, placed.thicknessScale);
+    glUniform4fv(program->instanceColour, 1, &instance.colour[0]);
     glUniform1f(program->pointScale, placed.thicknessScale * material.pointScale);
     glUniform1ui(program->instanceIdentity, instance.identity);
     const auto corners = static_cast<GLsizei>(one.triangles * 3);

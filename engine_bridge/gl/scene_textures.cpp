@@ -34,6 +34,28 @@ GLint wrapOf(Wrap wrap) {
   throw std::logic_error("a texture wraps in no known way");
 }
 
+GLint minFilterOf(Minify minify) {
+  switch (minify) {
+    case Minify::nearest:
+      return GL_NEAREST;
+    case Minify::linear:
+      return GL_LINEAR;
+    case Minify::nearestMipNearest:
+      return GL_NEAREST_MIPMAP_NEAREST;
+    case Minify::linearMipNearest:
+      return GL_LINEAR_MIPMAP_NEAREST;
+    case Minify::nearestMipLinear:
+      return GL_NEAREST_MIPMAP_LINEAR;
+    case Minify::linearMipLinear:
+      return GL_LINEAR_MIPMAP_LINEAR;
+  }
+  throw std::logic_error("a texture is minified in no known way");
+}
+
+bool hasLevels(Minify minify) {
+  return minify != Minify::nearest && minify != Minify::linear;
+}
+
 // Texture units, as shaders/gl/material.glsl numbers them. 5 and 6 are the frame's.
 constexpr GLuint kUnits[] = {0, 1, 2, 3, 4, 10, 8, 9};
 
@@ -41,11 +63,13 @@ void uploadLevel(const Texture& texture, GLint level, const Image<glm::vec4>& te
   glTextureSubImage2D(texture.name(), level, 0, 0, texels.width(), texels.height(), GL_RGBA, GL_FLOAT, texels.data());
 }
 
-// The cut that the base texture's own alpha has to reach; 0 where there is none to keep coverage for.
-float cutOfBase(const Material& material) {
-  if (material.alphaMode != AlphaMode::mask || !(material.baseColor.a > 0.0f)) return 0.0f;
-  const float cut = material.alphaCutoff / material.baseColor.a;
-  return cut <= 1.0f ? cut : 0.0f;
+// Colours times alpha: what is filtered is then weighted by it.
+Image<glm::vec4> weighted(Image<glm::vec4> texels) {
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const float alpha = texels[i].a;
+    texels[i] = glm::vec4(glm::vec3(texels[i]) * alpha, alpha);
+  }
+  return texels;
 }
 
 }  // namespace
@@ -57,9 +81,9 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
     if (material.transparent() == opaque) continue;
     const auto references = material.textures();
     for (std::size_t slot = 0; slot < references.size(); ++slot) {
-      const Key key{references[slot]->texture, slot == 0 ? keptCut(material) : 0.0f};
-      if (key.first < 0 || uploaded_.count(key)) continue;
-      const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(key.first));
+      const Key key = keyOf(material, slot);
+      if (key.texture < 0 || uploaded_.count(key)) continue;
+      const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(key.texture));
       const Image<glm::vec4>& texels = texture.texels;
       if (texels.empty()) throw std::logic_error(texture.name + ": a texture without texels");
       if (std::max(texels.width(), texels.height()) > largest)
@@ -69,9 +93,9 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
       uploaded.texture = Texture::make();
       const auto edge = static_cast<unsigned>(std::max(texels.width(), texels.height()));
       glTextureStorage2D(uploaded.texture.name(), std::bit_width(edge), GL_RGBA32F, texels.width(), texels.height());
-      uploadLevel(uploaded.texture, 0, texels);
+      uploadLevel(uploaded.texture, 0, key.weighted ? weighted(texels) : texels);
       checkGl("uploading texture " + texture.name);
-      ranges_.emplace(key.first, rangeOf(texels));
+      ranges_.emplace(key.texture, rangeOf(texels));
       uploaded_.emplace(key, std::move(uploaded));
     }
   }
@@ -88,22 +112,46 @@ float SceneTextures::keptCut(const Material& material) {
   return known->second ? cut : 0.0f;
 }
 
+bool SceneTextures::weighs(const Material& material) {
+  const int index = material.baseColorTexture.texture;
+  if (index < 0 || material.alphaMode == AlphaMode::opaque) return false;
+  const auto known = std::make_pair(index, material.alphaMode == AlphaMode::mask && material.alphaCutoff <= 0.0f);
+  const auto found = weighs_.find(known);
+  return found != weighs_.end() ? found->second : weighs_.emplace(known, weighsByAlpha(material, scene_)).first->second;
+}
+
+SceneTextures::Key SceneTextures::keyOf(const Material& material, std::size_t slot) {
+  const int texture = material.textures()[slot]->texture;
+  return slot == 0 ? Key{texture, keptCut(material), weighs(material)} : Key{texture, 0.0f, false};
+}
+
+std::vector<std::string> SceneTextures::defines(const Material& material, TextureFilter filter) {
+  std::vector<std::string> defines;
+  if (weighs(material)) defines.emplace_back("BASE_WEIGHTED");
+  const int base = material.baseColorTexture.texture;
+  if (material.alphaMode == AlphaMode::mask && base >= 0 &&
+      (filter != TextureFilter::mipmap || !hasLevels(scene_.textures[static_cast<std::size_t>(base)].minify)))
+    defines.emplace_back("MASK_UNLEVELLED");
+  return defines;
+}
+
 TexelRange SceneTextures::range(int index) const {
   return index < 0 ? TexelRange{} : ranges_.at(index);
 }
 
 const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, TextureFilter filter, float footprint) {
   const bool nearest = texture.nearest || filter == TextureFilter::nearest;
-  const bool mipmap = filter == TextureFilter::mipmap;
-  const int key =
-      ((static_cast<int>(texture.wrapS) * 3 + static_cast<int>(texture.wrapT)) * 2 + (nearest ? 1 : 0)) * 2 +
-      (mipmap ? 1 : 0);
-  Sampler& sampler = samplers_[{key, mipmap ? footprint : 1.0f}];
+  const bool flag = filter != TextureFilter::mipmap;  // reads level 0, whatever the file says
+  const bool mipmap = !flag && hasLevels(texture.minify);
+  Sampling sampling = texture;
+  sampling.nearest = nearest;
+  if (flag) sampling.minify = nearest ? Minify::nearest : Minify::linear;
+  Sampler& sampler = samplers_[{sampling, mipmap ? footprint : 1.0f}];
   if (!sampler) {
     sampler = Sampler::make();
     const GLint flat = nearest ? GL_NEAREST : GL_LINEAR;
     glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, flat);
-    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, mipmap ? GL_LINEAR_MIPMAP_LINEAR : flat);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, minFilterOf(sampling.minify));
     if (mipmap) glSamplerParameterf(sampler.name(), GL_TEXTURE_LOD_BIAS, std::log2(footprint));
     glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, wrapOf(texture.wrapS));
     glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, wrapOf(texture.wrapT));
@@ -114,13 +162,13 @@ const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, Textu
 // What a mask covers stays the same at every level; other textures are averaged.
 void SceneTextures::makeMipmaps(const Key& key, Uploaded& uploaded) {
   uploaded.mipmaps = true;
-  if (key.second <= 0.0f) {
+  if (key.cut <= 0.0f) {
     glGenerateTextureMipmap(uploaded.texture.name());
     return;
   }
-  const auto levels = coveragePreservingMips(scene_.textures[static_cast<std::size_t>(key.first)].texels, key.second);
+  const auto levels = coveragePreservingMips(scene_.textures[static_cast<std::size_t>(key.texture)].texels, key.cut);
   for (std::size_t level = 1; level < levels.size(); ++level)
-    uploadLevel(uploaded.texture, static_cast<GLint>(level), levels[level]);
+    uploadLevel(uploaded.texture, static_cast<GLint>(level), key.weighted ? weighted(levels[level]) : levels[level]);
   checkGl("uploading the mip levels of a mask");
 }
 
@@ -129,11 +177,12 @@ void SceneTextures::bind(const Material& material, TextureFilter filter, float f
   for (std::size_t i = 0; i < references.size(); ++i) {
     const int index = references[i]->texture;
     if (index < 0) continue;
-    const Key key{index, i == 0 ? keptCut(material) : 0.0f};
+    const Key key = keyOf(material, i);
     Uploaded& uploaded = uploaded_.at(key);
-    if (filter == TextureFilter::mipmap && !uploaded.mipmaps) makeMipmaps(key, uploaded);
+    const pellucid::Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
+    if (filter == TextureFilter::mipmap && hasLevels(texture.minify) && !uploaded.mipmaps) makeMipmaps(key, uploaded);
     glBindTextureUnit(kUnits[i], uploaded.texture.name());
-    glBindSampler(kUnits[i], samplerFor(scene_.textures[static_cast<std::size_t>(index)], filter, footprint).name());
+    glBindSampler(kUnits[i], samplerFor(texture, filter, footprint).name());
   }
 }
 

@@ -1,6 +1,7 @@
 // A scene's textures on the device, and the samplers that read them.
 #pragma once
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,8 @@ class SceneTextures {
   // Binds a material's textures to their units, as shaders/gl/material.glsl numbers them.
   //   footprint  of a sample, pixels: mip levels are chosen for it
   void bind(const Material& material, TextureFilter filter, float footprint = 1.0f);
+  // What shaders/gl/material.glsl has to know of how a material's textures are stored: defines.
+  std::vector<std::string> defines(const Material& material, TextureFilter filter);
   // Of texture `index`; all 1 for -1, as a missing texture counts in a product.
   TexelRange range(int index) const;
 
@@ -33,16 +36,24 @@ class SceneTextures {
     Texture texture;
     bool mipmaps = false;  // made when a filter first asks for them
   };
-  using Key = std::pair<int, float>;  // texture, and the cut whose covered area its levels keep; 0 for none
+  struct Key {
+    int texture;
+    float cut;      // whose covered area its levels keep; 0 for none
+    bool weighted;  // colours are times alpha
+    auto operator<=>(const Key&) const = default;
+  };
+  bool weighs(const Material& material);  // its base colour is stored times its alpha
+  Key keyOf(const Material& material, std::size_t slot);
   // That cut for the base colour of a material that is cut out of a mask; 0 for others.
   float keptCut(const Material& material);
   void makeMipmaps(const Key& key, Uploaded& uploaded);
 
   const Scene& scene_;
   std::map<Key, Uploaded> uploaded_;
-  std::map<int, bool> masks_;  // by texture: whether its finest level is binary
+  std::map<int, bool> masks_;                    // by texture: whether its finest level is binary
+  std::map<std::pair<int, bool>, bool> weighs_;  // by texture, and whether every alpha passes
   std::map<int, TexelRange> ranges_;
-  std::map<std::pair<int, float>, Sampler> samplers_;  // by kind and footprint
+  std::map<std::pair<Sampling, float>, Sampler> samplers_;  // and by footprint
 };
 
 }  // namespace pellucid::gl

@@ -72,17 +72,20 @@ ShadowDrawer::ShadowDrawer(const Scene& scene, const Camera& camera, const GBuff
   features.mask = MaskEdge::hard;
   std::vector<bool> used(scene.primitives.size(), false);
   for (const Instance& instance : scene.instances) used[static_cast<std::size_t>(instance.primitive)] = true;
+  const std::vector<ColourRange> drawnColours = coloursDrawn(scene);
   for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
     const Primitive& primitive = scene.primitives[i];
     const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
     Look look;
     if (used[i] && castsInto(Casters::opaque, material)) sceneIsOpaque_ = true;
     if (used[i] && castsInto(Casters::transparent, material)) {
-      const ColourRange colours = coloursOf(primitive);
+      const ColourRange& colours = drawnColours[i];
       const bool vertexColours = colours.least != glm::vec4(1.0f) || colours.most != glm::vec4(1.0f);
       look.casts = true;
-      look.bothSides = primitive.points || material.doubleSided || !isClosed(primitive);
+      look.bothSides = primitive.points || material.bothSides() || !isClosed(primitive);
       look.defines = surfaceDefines(material, vertexColours, features, false, primitive.points);
+      for (std::string& define : textures_.defines(material, TextureFilter::bilinear))
+        look.defines.push_back(std::move(define));
       std::erase(look.defines, "NORMAL_TEXTURE");  // a caster is as dense as its mesh says
       look.defines.emplace_back("EXACT_COVERAGE");
       if (canTransmitColour(material, vertexColours)) grey_ = false;
@@ -247,6 +250,7 @@ void ShadowDrawer::drawCasters() {
       glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
       glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
       glUniform1f(program->thicknessScale, placed.thicknessScale);
+      glUniform4fv(program->instanceColour, 1, &instance.colour[0]);
       glUniform1f(program->pointScale,
                   placed.thicknessScale * scene_.materials[static_cast<std::size_t>(boundMaterial)].pointScale);
       glUniform1ui(program->instanceIdentity, instance.identity);

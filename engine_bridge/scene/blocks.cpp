@@ -21,13 +21,11 @@ float roughnessThrough(float ior) {
 }  // namespace
 
 bool hasVolume(const Material& material) {
-  const bool interior = material.thin ? !*material.thin : material.volume;
-  return interior && material.thickness > 0.0f && material.attenuationDistance > 0.0f;
+  return material.hasInterior() && material.thickness > 0.0f && material.attenuationDistance > 0.0f;
 }
 
 bool refracts(const Material& material) {
-  const bool interior = material.thin ? !*material.thin : material.volume;
-  return interior && !material.unlit && material.transmission > 0.0f && material.ior != 1.0f;
+  return material.hasInterior() && !material.unlit && material.transmission > 0.0f && material.ior != 1.0f;
 }
 
 bool disperses(const Material& material) {

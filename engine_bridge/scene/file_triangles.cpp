@@ -75,6 +75,11 @@ std::array<std::uint32_t, 3> FileTriangles::cornersOf(std::size_t number) const 
 RawTriangle FileTriangles::triangle(std::size_t number, Faults& faults) const {
   RawTriangle result;
   result.corners = cornersOf(number);
+  if (!mirrored.empty()) {
+    int turned = 0;
+    for (const std::uint32_t corner : result.corners) turned += mirrored[corner] ? 1 : 0;
+    if (turned > 1) std::swap(result.corners[1], result.corners[2]);  // glTF 2.0, 3.7.4
+  }
   glm::vec3 p[3];
   for (std::size_t k = 0; k < 3; ++k) p[k] = vec3At(*positions, result.corners[k]);
   if (!finite(p[0]) || !finite(p[1]) || !finite(p[2])) {

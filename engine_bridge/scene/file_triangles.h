@@ -30,6 +30,7 @@ struct FileTriangles {
   Shared positions, normals, tangents, colours;
   std::array<Shared, 2> uvs;
   std::shared_ptr<const Indices> indices;  // null: vertices in order
+  std::vector<bool> mirrored;              // by vertex, whether its pose mirrors; empty for none
 
   std::size_t corners() const { return indices ? indices->count : positions->count; }
   std::size_t triangles() const;  // those without area included

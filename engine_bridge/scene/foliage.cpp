@@ -153,4 +153,22 @@ std::vector<Image<glm::vec4>> coveragePreservingMips(const Image<glm::vec4>& tex
   return levels;
 }
 
+bool weighsByAlpha(const Material& material, const Scene& scene) {
+  if (material.alphaMode == AlphaMode::opaque || material.baseColorTexture.texture < 0) return false;
+  // A cut at or below 0 passes every alpha.
+  if (material.alphaMode == AlphaMode::mask && material.alphaCutoff <= 0.0f) return false;
+  const Image<glm::vec4>& texels =
+      scene.textures.at(static_cast<std::size_t>(material.baseColorTexture.texture)).texels;
+  for (std::size_t i = 0; i < texels.size(); ++i)
+    if (texels[i].a < 1.0f) return true;
+  return false;
+}
+
+float cutOfBase(const Material& material) {
+  if (material.alphaMode != AlphaMode::mask || material.baseColorTexture.texture < 0) return 0.0f;
+  if (!(material.baseColor.a > 0.0f)) return 0.0f;
+  const float cut = material.alphaCutoff / material.baseColor.a;
+  return cut <= 1.0f ? cut : 0.0f;
+}
+
 }  // namespace pellucid

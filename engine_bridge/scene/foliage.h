@@ -32,6 +32,13 @@ bool infersOcclusion(const Material& material, const Scene& scene);
 //   cutoff  (0,1]
 std::vector<Image<glm::vec4>> coveragePreservingMips(const Image<glm::vec4>& texels, float cutoff);
 
+// Whether the texels of its base colour are filtered weighted by their alpha: clear ones then lend their colour to
+// none. Where alpha is not looked at, or is 1 everywhere, they are filtered as they are.
+bool weighsByAlpha(const Material& material, const Scene& scene);
+
+// The cut that the base texture's own alpha has to reach, (0,1]; 0 for a material without one.
+float cutOfBase(const Material& material);
+
 // Part of a level's area whose bilinear alpha reaches the cutoff. [0,1]
 double coveredArea(const Image<glm::vec4>& level, float cutoff, float scale = 1.0f);
 

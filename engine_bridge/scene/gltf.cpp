@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <new>
@@ -12,9 +13,11 @@
 #include "engine_bridge/scene/instancing.h"
 #include "engine_bridge/scene/materials.h"
 #include "engine_bridge/scene/nodes.h"
+#include "engine_bridge/scene/placed.h"
 #include "engine_bridge/scene/pose.h"
 #include "engine_bridge/scene/primitives.h"
 #include "engine_bridge/scene/tangents.h"
+#include "engine_bridge/scene/triangle_source.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid {
@@ -62,15 +65,11 @@ std::uint32_t identityOf(std::size_t file, std::size_t node, std::size_t mesh, s
   return hash;
 }
 
-enum class Facing { kept, mirrored, flat };
-
-// flat: a scale of zero, to within rounding. Such objects are hidden, and have no normals.
-Facing facingOf(const glm::dmat4& worldFromObject) {
+// A scale of zero along two axes leaves no triangle an area; along one, what is flat already stays as it is.
+bool vanishes(const glm::dmat4& worldFromObject) {
   const glm::dvec3 x(worldFromObject[0]), y(worldFromObject[1]), z(worldFromObject[2]);
-  const double volume = glm::dot(glm::cross(x, y), z);
-  const double cube = glm::length(x) * glm::length(y) * glm::length(z);
-  if (!(std::abs(volume) > 1e-12 * cube)) return Facing::flat;
-  return volume < 0.0 ? Facing::mirrored : Facing::kept;
+  return glm::cross(x, y) == glm::dvec3(0.0) && glm::cross(y, z) == glm::dvec3(0.0) &&
+         glm::cross(z, x) == glm::dvec3(0.0);
 }
 
 bool hasTangents(const Primitive& primitive) {
@@ -78,6 +77,12 @@ bool hasTangents(const Primitive& primitive) {
   for (const Vertex& vertex : primitive.vertices)
     if (vertex.tangent != glm::vec2(0.0f)) return true;
   return false;
+}
+
+float largestAlpha(const Image<glm::vec4>& texels) {
+  float most = 0.0f;
+  for (std::size_t i = 0; i < texels.size(); ++i) most = std::max(most, texels[i].a);
+  return most;
 }
 
 // One file's meshes and materials on their way into the scene.
@@ -98,7 +103,7 @@ class FileLoader {
     poses_.emplace(file_, nodes, options_.metresPerUnit);
     for (const PlacedNode& node : nodes) placeMesh(node);
     readLights(file_, nodes, options_, notes_, scene_.lights);
-    readCameras(file_, nodes, options_.metresPerUnit, scene_.cameras);
+    readCameras(file_, nodes, options_.metresPerUnit, notes_, scene_.cameras);
     primitives_.noteCounts();
   }
 
@@ -115,7 +120,8 @@ class FileLoader {
     std::set<std::size_t> seen;
     for (const PlacedNode& node : nodes) {
       const std::optional<JsonView> reference = file_.item("nodes", node.index).find("mesh");
-      if (!reference || !seen.insert(reference->index(file_.count("meshes"), "meshes")).second) continue;
+      if (!reference || !node.visible || !seen.insert(reference->index(file_.count("meshes"), "meshes")).second)
+        continue;
       const JsonView mesh = *meshOf(node);
       for (std::size_t i = 0; i < mesh.size(); ++i) {
         const std::optional<JsonView> material = mesh.at(i).find("material");
@@ -182,7 +188,7 @@ class FileLoader {
   }
 
   void placeMesh(const PlacedNode& node) {
-    const std::optional<JsonView> primitives = meshOf(node);
+    const std::optional<JsonView> primitives = node.visible ? meshOf(node) : std::nullopt;
     if (!primitives) return;
     const JsonView source = file_.item("nodes", node.index);
     const std::size_t meshIndex = source.at("mesh").index(file_.count("meshes"), "meshes");
@@ -195,34 +201,55 @@ class FileLoader {
       world = glm::dmat4(options_.metresPerUnit);
       world[3][3] = 1.0;
     }
-    const std::optional<std::vector<glm::dmat4>> many = instanceTransforms(file_, source);
+    const std::optional<std::vector<InstancePlace>> many = instancesOf(file_, source);
     if (!many) {
-      place(node, source, drawn, *primitives, world, 0);
+      place(node, source, drawn, *primitives, {world}, 0);
       return;
     }
     for (std::size_t i = 0; i < many->size(); ++i) {
-      const glm::dmat4 one = world * (*many)[i];
-      checkMagnitude(source, one);
+      const InstancePlace one{world * (*many)[i].transform, (*many)[i].colour};
+      checkMagnitude(source, one.transform);
       place(node, source, drawn, *primitives, one, i + 1);
     }
   }
 
-  //   copy  0, or 1 and up for the instances of one node
+  // Whether some texel, factor and vertex could pass its alpha test: below the cutoff everything is clear.
+  bool canShow(int number) {
+    const auto known = shows_.find(number);
+    if (known != shows_.end()) return known->second;
+    const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(number)];
+    const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
+    bool shows = true;
+    if (material.alphaMode == AlphaMode::mask) {
+      float most = 1.0f;
+      if (const int texture = material.baseColorTexture.texture; texture >= 0)
+        most = largestAlpha(scene_.textures[static_cast<std::size_t>(texture)].texels);
+      shows = material.baseColor.a * coloursOf(primitive).most.a * most >= material.alphaCutoff;
+      if (!shows)
+        notes_.add(fmt::format("material {}: no alpha reaches its cutoff of {:g}; nothing of it is drawn",
+                               material.name, material.alphaCutoff));
+    }
+    shows_.emplace(number, shows);
+    return shows;
+  }
+
+  //   there  in the world
+  //   copy   0, or 1 and up for the instances of one node
   void place(const PlacedNode& node, const JsonView& source, const Drawn& drawn, const JsonView& primitives,
-             const glm::dmat4& world, std::size_t copy) {
-    const Facing facing = facingOf(world);
-    if (facing == Facing::flat) {
+             const InstancePlace& there, std::size_t copy) {
+    if (vanishes(there.transform)) {
       notes_.add(fmt::format("node {} has a scale of zero and is not drawn", node.name));
       return;
     }
     for (std::size_t i = 0; i < primitives.size(); ++i) {
-      const int primitive = primitiveOf(drawn, i, primitives.at(i), facing == Facing::mirrored);
-      if (primitive < 0) continue;
+      const int primitive = primitiveOf(drawn, i, primitives.at(i), mirrors(there.transform));
+      if (primitive < 0 || !canShow(primitive)) continue;
       if (scene_.instances.size() - firstInstance_ >= kFreeInstances + file_.bytesRead()) {
         source.refuse(fmt::format("takes the file beyond {} instances", kFreeInstances + file_.bytesRead()));
       }
       Instance instance;
-      instance.worldFromObject = world;
+      instance.worldFromObject = there.transform;
+      instance.colour = there.colour;
       instance.primitive = primitive;
       instance.node = node.name;
       instance.identity = identityOf(fileIndex_, node.index, drawn.mesh, i);
@@ -240,6 +267,7 @@ class FileLoader {
   PrimitiveReader primitives_;
   std::optional<PoseReader> poses_;
   std::map<std::tuple<std::size_t, std::size_t, std::size_t, bool>, int> loaded_;
+  std::map<int, bool> shows_;  // by primitive: canShow
   std::size_t firstMaterial_ = 0, firstInstance_ = 0;
   int default_ = -1;
 };
@@ -259,7 +287,7 @@ Scene loadScene(const std::vector<std::string>& paths, const SceneOptions& optio
   const auto ledger = options.streamBytes ? std::make_shared<PageLedger>(options.streamBytes) : nullptr;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     try {
-      GltfFile file(paths[i], ledger);
+      GltfFile file(paths[i], ledger, options.assetRoot);
       Notes notes(paths[i], scene.notes);
       checkExtensions(file, notes);
       try {

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "engine_bridge/scene/meshopt.h"
 #include "engine_bridge/scene/uri.h"
@@ -54,26 +52,11 @@ std::vector<std::uint8_t> dataUriBytes(const std::string& uri, const std::string
 
 }  // namespace
 
-std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::string& whose) {
-  std::error_code problem;
-  const std::filesystem::file_status status = std::filesystem::status(path, problem);
-  if (!std::filesystem::exists(status)) throw InputError(printable(fmt::format("{}: {} does not exist", whose, path)));
-  // A device or a pipe has no size to check against.
-  if (!std::filesystem::is_regular_file(status))
-    throw InputError(printable(fmt::format("{}: {} is not a regular file", whose, path)));
-  const std::uintmax_t size = std::filesystem::file_size(path, problem);
-  std::ifstream stream(path, std::ios::binary);
-  if (problem || !stream) throw InputError(printable(fmt::format("{}: {} cannot be opened for reading", whose, path)));
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
-    throw InputError(fmt::format("{}: {} ends after {} bytes; expected {}", whose, path, stream.gcount(), size));
-  }
-  return bytes;
-}
-
-GltfFile::GltfFile(const std::string& path, std::shared_ptr<PageLedger> ledger)
-    : path_(path), ledger_(std::move(ledger)), content_(std::make_shared<MappedFile>(path, "glTF scene", ledger_)) {
+GltfFile::GltfFile(const std::string& path, std::shared_ptr<PageLedger> ledger, const std::string& assetRoot)
+    : path_(path),
+      named_(path, assetRoot),
+      ledger_(std::move(ledger)),
+      content_(std::make_shared<MappedFile>(path, "glTF scene", ledger_)) {
   bytesRead_ = content_.size();
   const Bytes all = content_.bytes();
   if (all.size() < 4 || littleEndian32(all, 0) != kGlbMagic) {
@@ -199,24 +182,24 @@ void GltfFile::requireWhole() const {
     if (buffer.file()) buffer.file()->requireWhole();
 }
 
-std::string GltfFile::pathOf(const std::string& uri, const std::string& whose) const {
+OpenFile GltfFile::openNamed(const std::string& uri, const std::string& whose) const {
   const std::string_view scheme = uriScheme(uri);
   if (!scheme.empty()) {
     throw InputError(
         fmt::format("{}: its URI has the scheme {}; expected data: or a file beside the scene", whose, scheme));
   }
-  const std::string name = decodePercent(uri);
-  if (name.find('\0') != std::string::npos) throw InputError(fmt::format("{}: its URI holds a zero byte", whose));
-  return (std::filesystem::path(path_).parent_path() / name).string();
+  if (decodePercent(uri).find('\0') != std::string::npos)
+    throw InputError(fmt::format("{}: its URI holds a zero byte", whose));
+  return named_.open(uri, printable(whose));
 }
 
 SharedBytes GltfFile::uriBuffer(const std::string& uri, const std::string& whose) const {
   if (isDataUri(uri)) return SharedBytes(dataUriBytes(uri, whose));
-  return SharedBytes(std::make_shared<MappedFile>(pathOf(uri, whose), printable(whose), ledger_));
+  return SharedBytes(std::make_shared<MappedFile>(openNamed(uri, whose), printable(whose), ledger_));
 }
 
 std::vector<std::uint8_t> GltfFile::uriBytes(const std::string& uri, const std::string& whose) const {
-  return isDataUri(uri) ? dataUriBytes(uri, whose) : readWholeFile(pathOf(uri, whose), printable(whose));
+  return isDataUri(uri) ? dataUriBytes(uri, whose) : readWhole(openNamed(uri, whose), printable(whose));
 }
 
 }  // namespace pellucid::gltf

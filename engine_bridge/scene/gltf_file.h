@@ -6,20 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "engine_bridge/scene/asset_files.h"
 #include "engine_bridge/scene/json_view.h"
 #include "engine_bridge/scene/mapped_file.h"
 
 namespace pellucid::gltf {
 
-// The whole of a regular file. Throws InputError when it is missing, not a regular file or unreadable.
-//   whose  begins the sentence: "scene.gltf: buffers[0]"
-std::vector<std::uint8_t> readWholeFile(const std::string& path, const std::string& whose);
-
 // A file of the glTF family, opened: the JSON is parsed and asset.version checked. Throws InputError.
 class GltfFile {
  public:
-  //   ledger  of the pages of its files, or null
-  explicit GltfFile(const std::string& path, std::shared_ptr<PageLedger> ledger = nullptr);
+  //   ledger     of the pages of its files, or null
+  //   assetRoot  a folder whose files it may name besides those under its own; empty for none
+  explicit GltfFile(const std::string& path, std::shared_ptr<PageLedger> ledger = nullptr,
+                    const std::string& assetRoot = "");
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
@@ -35,7 +34,7 @@ class GltfFile {
   // The bytes of a buffer view, checked against its buffer, unpacked when they are compressed. Buffers are mapped at
   // first use and kept.
   SharedBytes viewBytes(const JsonView& view);
-  // The content of a data: URI, or of a file beside this one.
+  // The content of a data: URI, or of a file under this one's folder.
   std::vector<std::uint8_t> uriBytes(const std::string& uri, const std::string& whose) const;
   // Everything read or mapped so far. What a scene may grow to is measured against it.
   std::size_t bytesRead() const { return bytesRead_; }
@@ -46,10 +45,11 @@ class GltfFile {
   SharedBytes bufferBytes(std::size_t index);
   SharedBytes rangeOf(const JsonView& holder);  // of the object with buffer, byteOffset and byteLength
   SharedBytes uriBuffer(const std::string& uri, const std::string& whose) const;
-  std::string pathOf(const std::string& uri, const std::string& whose) const;
+  OpenFile openNamed(const std::string& uri, const std::string& whose) const;
   void parseJson(Bytes text);
 
   std::string path_;
+  AssetFiles named_;
   std::shared_ptr<PageLedger> ledger_;
   SharedBytes content_;  // of the .gltf or .glb
   SharedBytes binary_;   // the BIN chunk of a .glb

@@ -80,21 +80,15 @@ bool readSamples(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int chann
   return input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, samples.data());
 }
 
-}  // namespace
+// An image as it is stored, integers divided by their largest.
+struct Samples {
+  int width = 0, height = 0, channels = 0;  // at most 4 of them
+  bool floats = false, eightBit = false;
+  std::vector<float> values;
+};
 
-float linearFromSrgb(float encoded) {
-  const double e = std::clamp(static_cast<double>(encoded), 0.0, 1.0);
-  return static_cast<float>(e <= 0.04045 ? e / 12.92 : std::pow((e + 0.055) / 1.055, 2.4));
-}
-
-Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse use, const std::string& whose,
-                             const std::string& name, Notes& notes) {
-  const std::string format = formatOf(bytes, name);
+Samples readImage(const std::vector<std::uint8_t>& bytes, const std::string& format, const std::string& whose) {
   const auto refuse = [&](const std::string& rest) { throw InputError(printable(whose + " " + rest)); };
-  if (bytes.empty()) refuse("is empty; expected an encoded image");
-  if (!isWholeImage(bytes, format)) {
-    refuse(fmt::format("is a {} image that is cut short: found {} bytes and no end marker", format, bytes.size()));
-  }
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;  // glTF alpha is straight; OIIO would premultiply
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
@@ -116,26 +110,59 @@ Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse us
     refuse(fmt::format("has {}x{} pixels of {} channels; expected 1 to {} pixels a side and 1 to 64 channels",
                        spec.width, spec.height, spec.nchannels, kMostEdge));
   }
-  const int channels = std::min(spec.nchannels, 4);
-  std::vector<float> samples;
-  if (!readSamples(*input, spec, channels, samples)) refuse(fmt::format("is damaged: {}", input->geterror()));
-  const bool floats = spec.format.is_floating_point();
-  const bool decode = use == TexelUse::colour && !floats;
-  const bool eightBit = spec.format.basetype == OIIO::TypeDesc::UINT8;
-  Image<glm::vec4> texels(spec.width, spec.height);
+  Samples samples;
+  samples.width = spec.width;
+  samples.height = spec.height;
+  samples.channels = std::min(spec.nchannels, 4);
+  samples.floats = spec.format.is_floating_point();
+  samples.eightBit = spec.format.basetype == OIIO::TypeDesc::UINT8;
+  if (!readSamples(*input, spec, samples.channels, samples.values))
+    refuse(fmt::format("is damaged: {}", input->geterror()));
+  return samples;
+}
+
+// The colours of `from`, which has no alpha, in place of those of `to`.
+void putColours(const Samples& from, Samples& to) {
+  if (from.channels != 3 || from.width != to.width || from.height != to.height) return;
+  for (std::size_t i = 0; 4 * i < to.values.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) to.values[4 * i + c] = from.values[3 * i + c];
+}
+
+}  // namespace
+
+float linearFromSrgb(float encoded) {
+  const double e = std::clamp(static_cast<double>(encoded), 0.0, 1.0);
+  return static_cast<float>(e <= 0.04045 ? e / 12.92 : std::pow((e + 0.055) / 1.055, 2.4));
+}
+
+Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse use, const std::string& whose,
+                             const std::string& name, Notes& notes) {
+  const std::string format = formatOf(bytes, name);
+  if (bytes.empty()) throw InputError(printable(whose + " is empty; expected an encoded image"));
+  if (!isWholeImage(bytes, format)) {
+    throw InputError(printable(fmt::format("{} is a {} image that is cut short: found {} bytes and no end marker",
+                                           whose, format, bytes.size())));
+  }
+  Samples image = readImage(bytes, format, whose);
+  if (format == "webp" && image.channels == 4) {
+    // OpenImageIO multiplies a WebP's colours by its alpha, in 8 bits and whatever it is asked for.
+    if (const auto opaque = withoutWebpAlpha(bytes)) putColours(readImage(*opaque, format, whose), image);
+  }
+  const bool decode = use == TexelUse::colour && !image.floats;
+  Image<glm::vec4> texels(image.width, image.height);
   std::size_t repaired = 0;
   for (std::size_t i = 0; i < texels.size(); ++i) {
-    const float* source = samples.data() + i * static_cast<std::size_t>(channels);
-    const bool grey = channels < 3;
+    const float* source = image.values.data() + i * static_cast<std::size_t>(image.channels);
+    const bool grey = image.channels < 3;
     glm::vec4 texel(source[0], grey ? source[0] : source[1], grey ? source[0] : source[2], 1.0f);
-    if (channels == 2) texel.a = source[1];
-    if (channels == 4) texel.a = source[3];
+    if (image.channels == 2) texel.a = source[1];
+    if (image.channels == 4) texel.a = source[3];
     for (int c = 0; c < 4; ++c) {
       if (!std::isfinite(texel[c]) || texel[c] < 0.0f) {
         texel[c] = 0.0f;
         ++repaired;
       }
-      if (decode && c < 3) texel[c] = decodeSrgb(texel[c], eightBit);
+      if (decode && c < 3) texel[c] = decodeSrgb(texel[c], image.eightBit);
     }
     texel.a = std::min(texel.a, 1.0f);
     texels[i] = texel;

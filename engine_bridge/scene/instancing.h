@@ -1,4 +1,4 @@
-// EXT_mesh_gpu_instancing: the many places of one node's mesh.
+// EXT_mesh_gpu_instancing: a node that draws its mesh many times.
 #pragma once
 #include <glm/glm.hpp>
 #include <optional>
@@ -8,8 +8,12 @@
 
 namespace pellucid::gltf {
 
-// Transforms relative to the node, in the file's order; empty for a node without the extension.
-// Throws InputError (damaged accessors, counts that differ, values that are not finite, rotations without length).
-std::optional<std::vector<glm::dmat4>> instanceTransforms(GltfFile& file, const JsonView& node);
+struct InstancePlace {
+  glm::dmat4 transform{1.0};  // between the node and the mesh
+  glm::vec4 colour{1.0f};     // _COLOR_0, linear, [0,1]: multiplies vertex colours
+};
+
+// One for each instance; empty when the node does not use the extension. Throws InputError.
+std::optional<std::vector<InstancePlace>> instancesOf(GltfFile& file, const JsonView& node);
 
 }  // namespace pellucid::gltf

@@ -26,6 +26,7 @@ LightKind kindOf(const JsonView& type) {
 void readLights(const GltfFile& file, const std::vector<PlacedNode>& nodes, const SceneOptions& options, Notes& notes,
                 std::vector<Light>& lights) {
   for (const PlacedNode& placed : nodes) {
+    if (!placed.visible) continue;
     const std::optional<JsonView> use = file.item("nodes", placed.index).extension(kExtension);
     if (!use) continue;
     const JsonView reference = use->at("light");

@@ -80,6 +80,10 @@ MappedFile::Slot* takeSlot(std::uintptr_t begin, std::uintptr_t end) {
   return slot;
 }
 
+[[noreturn]] void refuseFile(const std::string& whose, const std::string& path, const std::string& what) {
+  throw InputError(gltf::printable(fmt::format("{}: {} {}", whose, path, what)));
+}
+
 void giveBack(MappedFile::Slot* slot) {
   slot->end = 0;
   slot->begin = 0;
@@ -93,27 +97,45 @@ void PageLedger::letAllGo() {
   held_ = 0;
 }
 
-MappedFile::MappedFile(const std::string& path, const std::string& whose, std::shared_ptr<PageLedger> ledger)
-    : path_(path), whose_(whose), ledger_(std::move(ledger)) {
-  const auto refuse = [&](const std::string& what) {
-    throw InputError(gltf::printable(fmt::format("{}: {} {}", whose, path, what)));
-  };
-  // Not blocking: opening a pipe would wait for its other end.
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) refuse(errno == ENOENT || errno == ENOTDIR ? "does not exist" : "cannot be opened for reading");
-  struct Closed {
-    int descriptor;
-    ~Closed() { ::close(descriptor); }
-  } const closed{descriptor};
+OpenFile::OpenFile(const std::string& path, const std::string& whose)
+    // Not blocking: opening a pipe would wait for its other end.
+    : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)), path_(path) {
+  if (descriptor_ < 0)
+    refuseFile(whose, path_, errno == ENOENT || errno == ENOTDIR ? "does not exist" : "cannot be opened for reading");
+}
+
+OpenFile::~OpenFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::size_t OpenFile::size(const std::string& whose) const {
   struct stat status {};
-  if (::fstat(descriptor, &status) != 0) refuse("cannot be opened for reading");
-  // A device or a pipe has no size to check against.
-  if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
-  const auto size = static_cast<std::size_t>(status.st_size);
+  if (::fstat(descriptor_, &status) != 0) refuseFile(whose, path_, "cannot be opened for reading");
+  if (!S_ISREG(status.st_mode)) refuseFile(whose, path_, "is not a regular file");
+  return static_cast<std::size_t>(status.st_size);
+}
+
+std::vector<std::uint8_t> readWhole(const OpenFile& file, const std::string& whose) {
+  std::vector<std::uint8_t> bytes(file.size(whose));
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t some = ::read(file.descriptor(), bytes.data() + done, bytes.size() - done);
+    if (some < 0 && errno == EINTR) continue;
+    if (some <= 0) refuseFile(whose, file.path(), fmt::format("ends after {} bytes; expected {}", done, bytes.size()));
+    done += static_cast<std::size_t>(some);
+  }
+  return bytes;
+}
+
+MappedFile::MappedFile(const std::string& path, const std::string& whose, std::shared_ptr<PageLedger> ledger)
+    : MappedFile(OpenFile(path, whose), whose, std::move(ledger)) {}
+
+MappedFile::MappedFile(const OpenFile& file, const std::string& whose, std::shared_ptr<PageLedger> ledger)
+    : path_(file.path()), whose_(whose), ledger_(std::move(ledger)) {
+  const std::size_t size = file.size(whose);
   if (size == 0) return;
   handleBusErrors();
-  void* const mapped = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-  if (mapped == MAP_FAILED) refuse(fmt::format("cannot be mapped: {}", strerror(errno)));
+  void* const mapped = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
+  if (mapped == MAP_FAILED) refuseFile(whose, path_, fmt::format("cannot be mapped: {}", strerror(errno)));
   bytes_ = {static_cast<const std::uint8_t*>(mapped), size};
   const auto begin = reinterpret_cast<std::uintptr_t>(mapped);
   slot_ = takeSlot(begin, begin + (size + pageSize() - 1) / pageSize() * pageSize());

@@ -13,6 +13,35 @@ using Bytes = std::span<const std::uint8_t>;
 
 class MappedFile;
 
+// A file that is open for reading; closed with the last of its owners.
+class OpenFile {
+ public:
+  // Throws InputError when it is missing or unreadable.
+  //   whose  begins the sentence: "scene.gltf: buffers[0]"
+  OpenFile(const std::string& path, const std::string& whose);
+  // Takes an open descriptor.
+  //   path  for messages
+  OpenFile(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+  ~OpenFile();
+  OpenFile(OpenFile&& other) noexcept : descriptor_(other.descriptor_), path_(std::move(other.path_)) {
+    other.descriptor_ = -1;
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  const std::string& path() const { return path_; }
+  // Throws InputError unless it is a regular file: a device or a pipe has no size to check against.
+  std::size_t size(const std::string& whose) const;
+
+ private:
+  int descriptor_;
+  std::string path_;
+};
+
+// All of a regular file. Throws InputError.
+std::vector<std::uint8_t> readWhole(const OpenFile& file, const std::string& whose);
+
 // Bounds the pages of several mapped files that are in memory at once, to the limit and what is announced at a time:
 // what is read is announced beforehand, and when that has come to more than the limit, the next settle() lets all of it
 // go. Between two of them nothing leaves: a page let go while it is still read would come back without an entry. One
@@ -41,6 +70,7 @@ class MappedFile {
   //   whose   begins the sentence: "scene.gltf: buffers[0]"
   //   ledger  null: pages stay until they are let go
   MappedFile(const std::string& path, const std::string& whose, std::shared_ptr<PageLedger> ledger = nullptr);
+  MappedFile(const OpenFile& file, const std::string& whose, std::shared_ptr<PageLedger> ledger = nullptr);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;

@@ -17,7 +17,9 @@ constexpr float kMostDistance = 1e15f;
 constexpr float kMostNormalScale = 1e3f;
 constexpr float kMostIor = 100.0f;
 constexpr float kMostDispersion = 100.0f;  // an Abbe number of .2; real glass has 20 to 90
-constexpr double kMirrorF0 = 0.999999;     // reflectance of an infinite index, as near as a finite one needs to come
+constexpr float kReflectanceOfDefaultIor = 0.04f;
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+constexpr double kMirrorF0 = 0.999999;  // reflectance of an infinite index, as near as a finite one needs to come
 
 struct MaterialReader {
   const GltfFile& file;
@@ -61,11 +63,40 @@ struct MaterialReader {
     }
   }
 
-  void emissiveStrengthAndUnlit() const {
+  // KHR_materials_pbrSpecularGlossiness wins over what metallic and roughness say. Its reflectance head-on is a tint of
+  // that of index 1.5, which rises as Schlick's term does.
+  void specularGlossiness() const {
+    const auto extension = source.extension(kSpecularGlossiness);
+    if (!extension) return;
+    material.baseColor = extension->colourAlpha("diffuseFactor", glm::vec4(1.0f), 0.0f, 1.0f, notes);
+    material.baseColorTexture = texture(*extension, "diffuseTexture", TexelUse::colour);
+    material.metallic = 0.0f;
+    material.metallicRoughnessTexture = material.specularTexture = TextureRef{};
+    material.ior = 1.5f;
+    material.specular = 1.0f;
+    material.specularColor =
+        extension->colour("specularFactor", glm::vec3(1.0f), 0.0f, 1.0f, notes) / kReflectanceOfDefaultIor;
+    material.specularColorTexture = texture(*extension, "specularGlossinessTexture", TexelUse::colour);
+    const float glossiness = extension->number("glossinessFactor", 1.0f, 0.0f, 1.0f, notes);
+    material.roughness = 1.0f - glossiness;
+    if (const std::optional<JsonView> info = extension->find("specularGlossinessTexture")) {
+      material.roughness = 1.0f;
+      material.metallicRoughnessTexture = textures.readGlossy(*info, glossiness, material.name, used);
+    }
+  }
+
+  // Light goes through what reflects and scatters; unlit colours do neither, whatever stands beside them.
+  void unlit() const {
+    material.unlit = source.extension("KHR_materials_unlit").has_value();
+    if (!material.unlit || material.transmission <= 0.0f) return;
+    material.transmission = 0.0f;
+    note("is unlit, so its transmission is not used");
+  }
+
+  void emissiveStrength() const {
     if (const auto strength = source.extension("KHR_materials_emissive_strength")) {
       material.emission *= strength->number("emissiveStrength", 1.0f, 0.0f, kMostRadiance, notes);
     }
-    material.unlit = source.extension("KHR_materials_unlit").has_value();
   }
 
   void transmission() const {
@@ -158,11 +189,13 @@ Support supportFor(const std::string& extension) {
                                         "KHR_materials_dispersion"sv,
                                         "KHR_materials_emissive_strength"sv,
                                         "KHR_materials_ior"sv,
+                                        "KHR_materials_pbrSpecularGlossiness"sv,
                                         "KHR_materials_specular"sv,
                                         "KHR_materials_transmission"sv,
                                         "KHR_materials_unlit"sv,
                                         "KHR_materials_volume"sv,
                                         "KHR_mesh_quantization"sv,
+                                        "KHR_node_visibility"sv,
                                         "KHR_texture_transform"sv};
   constexpr std::string_view kHarmless[] = {"KHR_xmp"sv, "KHR_xmp_json_ld"sv, "KHR_materials_variants"sv};
   if (std::find(std::begin(kRead), std::end(kRead), extension) != std::end(kRead)) return Support::full;
@@ -178,12 +211,14 @@ Material readMaterial(const GltfFile& file, std::size_t index, double metresPerU
   if (material.name.empty()) material.name = fmt::format("material_{}", index);
   const MaterialReader reader{file, source, used, textures, notes, material};
   reader.base();
-  reader.emissiveStrengthAndUnlit();
+  reader.emissiveStrength();
   reader.transmission();
   reader.indexOfRefraction();
+  reader.specularGlossiness();
   reader.volume(metresPerUnit);
   reader.dispersion();
   reader.diffuseTransmission();
+  reader.unlit();
   reader.extras();
   return material;
 }

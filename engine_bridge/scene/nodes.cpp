@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
@@ -11,18 +12,17 @@ namespace pellucid::gltf {
 
 namespace {
 
+constexpr double kRoundedRow = 1e-5;     // what products of float matrices leave in a last row of 0 0 0 1
 constexpr double kMostMagnitude = 1e15;  // metres and scales beyond it leave no room for float products
 
 glm::dmat4 localMatrix(const JsonView& node) {
   if (const std::optional<JsonView> matrix = node.find("matrix")) {
     const std::vector<double> m = matrix->numbers(16);
-    if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0) {
-      matrix->refuse("has a last row other than 0 0 0 1; expected an affine transform");
-    }
+    const double off = std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1.0)});
+    if (!(off <= kRoundedRow)) matrix->refuse("has a last row other than 0 0 0 1; expected an affine transform");
     glm::dmat4 local(1.0);
-    for (int column = 0; column < 4; ++column) {
-      for (int row = 0; row < 4; ++row) local[column][row] = m[static_cast<std::size_t>(column * 4 + row)];
-    }
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 3; ++row) local[column][row] = m[static_cast<std::size_t>(column * 4 + row)] / m[15];
     return local;
   }
   glm::dmat4 local(1.0);
@@ -97,10 +97,11 @@ std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, N
   struct Pending {
     std::size_t index;
     glm::dmat4 worldFromParent;
+    bool visible;
   };
   // A stack of our own: a chain of a million nodes is no recursion.
   std::vector<Pending> pending;
-  for (std::size_t i = roots.size(); i-- > 0;) pending.push_back({roots[i], metresFromUnits});
+  for (std::size_t i = roots.size(); i-- > 0;) pending.push_back({roots[i], metresFromUnits, true});
   std::vector<bool> placed(count, false);
   std::vector<PlacedNode> nodes;
   while (!pending.empty()) {
@@ -115,9 +116,11 @@ std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, N
     if (result.name.empty()) result.name = fmt::format("node {}", next.index);
     result.worldFromObject = next.worldFromParent * localMatrix(node);
     checkMagnitude(node, result.worldFromObject);
+    const std::optional<JsonView> visibility = node.extension("KHR_node_visibility");
+    result.visible = next.visible && (!visibility || visibility->boolean("visible", true));
     if (const std::optional<JsonView> children = node.find("children")) {
       for (std::size_t c = children->size(); c-- > 0;) {
-        pending.push_back({children->at(c).index(count, "nodes"), result.worldFromObject});
+        pending.push_back({children->at(c).index(count, "nodes"), result.worldFromObject, result.visible});
       }
       if (pending.size() > 2 * count) children->refuse("name more nodes than there are; expected a tree");
     }
@@ -126,60 +129,6 @@ std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, N
   // From all the roots every node of a forest is reached.
   if (everyRoot && nodes.size() < count) throw InputError(file.path() + ": nodes form a cycle; expected a tree");
   return nodes;
-}
-
-void readCameras(const GltfFile& file, const std::vector<PlacedNode>& nodes, double metresPerUnit,
-                 std::vector<SceneCamera>& cameras) {
-  for (const PlacedNode& placed : nodes) {
-    const JsonView node = file.item("nodes", placed.index);
-    const std::optional<JsonView> reference = node.find("camera");
-    if (!reference) continue;
-    const JsonView source = file.item("cameras", *reference);
-    SceneCamera camera;
-    camera.name = node.string("name", source.string("name", placed.name));
-    const std::string kind = source.at("type").string();
-    if (kind != "perspective" && kind != "orthographic") {
-      source.at("type").refuse(fmt::format("is {}; expected perspective or orthographic", kind));
-    }
-    camera.orthographic = kind == "orthographic";
-    const JsonView lens = source.at(kind.c_str());
-    const auto positive = [&](const char* key, double most) {
-      const double value = lens.at(key).number();
-      if (!(value > 0.0 && value < most))
-        lens.at(key).refuse(fmt::format("is {:g}; expected 0 to {:g}, exclusive", value, most));
-      return value;
-    };
-    if (camera.orthographic) {
-      camera.xmag = positive("xmag", kMostMagnitude) * metresPerUnit;
-      camera.ymag = positive("ymag", kMostMagnitude) * metresPerUnit;
-      camera.znear = lens.at("znear").number();  // 0 is allowed here
-      camera.zfar = positive("zfar", kMostMagnitude);
-    } else {
-      constexpr double kPi = 3.14159265358979323846;
-      camera.yfov = positive("yfov", kPi);
-      if (lens.find("aspectRatio")) camera.aspect = positive("aspectRatio", kMostMagnitude);
-      camera.znear = positive("znear", kMostMagnitude);
-      if (lens.find("zfar")) camera.zfar = positive("zfar", kMostMagnitude);
-    }
-    if (camera.znear < 0.0 || (camera.zfar != 0.0 && camera.zfar <= camera.znear)) {
-      lens.refuse(fmt::format("has znear {:g} and zfar {:g}; expected 0 <= znear < zfar", camera.znear, camera.zfar));
-    }
-    camera.znear *= metresPerUnit;
-    camera.zfar *= metresPerUnit;
-    // A camera's scale and shear do not count (glTF 2.0, Cameras): only where it stands and where it looks.
-    const glm::dmat4& world = placed.worldFromObject;
-    const glm::dvec3 back(world[2]), up(world[1]);
-    const glm::dvec3 z = back / glm::length(back);
-    const glm::dvec3 sideways = glm::cross(up, z);
-    if (!(glm::length(back) > 0.0) || !(glm::length(sideways) > 1e-9 * glm::length(up))) {
-      node.refuse("carries a camera and has a transform without orientation; expected a rotation");
-    }
-    const glm::dvec3 x = sideways / glm::length(sideways);
-    const glm::dmat3 viewFromWorld = glm::transpose(glm::dmat3(x, glm::cross(z, x), z));
-    camera.viewFromWorld = glm::dmat4(viewFromWorld);
-    camera.viewFromWorld[3] = glm::dvec4(-(viewFromWorld * glm::dvec3(world[3])), 1.0);
-    cameras.push_back(std::move(camera));
-  }
 }
 
 }  // namespace pellucid::gltf

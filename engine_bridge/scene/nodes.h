@@ -15,6 +15,7 @@ struct PlacedNode {
   std::size_t index = 0;            // in the file
   std::string name;                 // "node 3" when it has none
   glm::dmat4 worldFromObject{1.0};  // metres
+  bool visible = true;              // KHR_node_visibility of it and its ancestors
 };
 
 // Nodes of the default scene, else of the only scene, else of all root nodes; depth first, children in file order.
@@ -24,12 +25,13 @@ std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, N
 // Throws InputError when a node's world transform leaves the range of magnitudes that float products stand.
 void checkMagnitude(const JsonView& node, const glm::dmat4& worldFromObject);
 
-// Appends what KHR_lights_punctual puts on the nodes. Throws InputError.
+// Appends what KHR_lights_punctual puts on the visible nodes. Throws InputError.
 void readLights(const GltfFile& file, const std::vector<PlacedNode>& nodes, const SceneOptions& options, Notes& notes,
                 std::vector<Light>& lights);
 
-// Appends the nodes' cameras. Throws InputError when one has no field of view or an empty clip range.
-void readCameras(const GltfFile& file, const std::vector<PlacedNode>& nodes, double metresPerUnit,
+// Appends the nodes' cameras, hidden nodes' too. One without a field of view, orientation or clip range is left out and
+// noted: most files are drawn through another.
+void readCameras(const GltfFile& file, const std::vector<PlacedNode>& nodes, double metresPerUnit, Notes& notes,
                  std::vector<SceneCamera>& cameras);
 
 }  // namespace pellucid::gltf

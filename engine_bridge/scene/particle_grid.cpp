@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine_bridge/scene/light_views.h"
+#include "engine_bridge/scene/placed.h"
 #include "engine_bridge/scene/triangle_source.h"
 
 namespace pellucid {
@@ -29,9 +30,8 @@ double meanAlpha(const Scene& scene, const Material& material) {
 
 void eachPoint(const Instance& instance, const Primitive& primitive, const Material& material, const Visit& visit) {
   constexpr std::size_t kAtOnce = 1024;
-  const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(instance.worldFromObject)))) *
-                       static_cast<double>(material.pointScale);
-  const double alpha = static_cast<double>(material.baseColor.a * material.coverage.value_or(1.0f));
+  const double scale = uniformScale(instance.worldFromObject) * static_cast<double>(material.pointScale);
+  const double alpha = static_cast<double>(material.baseColor.a * material.coverage.value_or(1.0f) * instance.colour.a);
   VertexPlaces places;
   TriangleBatch batch;
   for (std::size_t first = 0; first < primitive.triangles(); first += kAtOnce) {
@@ -56,9 +56,10 @@ void eachCard(const Scene& scene, const Instance& instance, const Primitive& pri
     high = glm::max(high, glm::dvec3(vertex.position));
   }
   const glm::dvec3 size = 0.5 * (high - low);
-  const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(instance.worldFromObject))));
+  const double scale = uniformScale(instance.worldFromObject);
   visit({glm::dvec3(instance.worldFromObject * glm::dvec4(0.5 * (low + high), 1.0)), scale * std::max(size.x, size.y),
-         static_cast<double>(material.baseColor.a * material.coverage.value_or(1.0f)) * meanAlpha(scene, material)});
+         static_cast<double>(material.baseColor.a * material.coverage.value_or(1.0f) * instance.colour.a) *
+             meanAlpha(scene, material)});
 }
 
 void eachBall(const Scene& scene, const Visit& visit) {

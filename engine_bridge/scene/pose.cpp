@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+
+#include "engine_bridge/scene/placed.h"
 
 namespace pellucid::gltf {
 
@@ -32,25 +35,36 @@ void store(Elements& elements, std::size_t i, glm::dvec3 value) {
 }
 
 void morph(GltfFile& file, const JsonView& primitive, const std::vector<double>& weights, bool quantised,
-           Elements& positions, Elements* normals, Elements* tangents) {
+           const PosedAttributes& posed) {
   const JsonView targets = primitive.at("targets");
   if (targets.size() != weights.size())
     targets.refuse(fmt::format("are {}; the weights are {}", targets.size(), weights.size()));
-  const auto add = [&](const JsonView& target, const char* name, double weight, Integers integers, Elements* base) {
+  const auto add = [&](const JsonView& target, const char* name, std::initializer_list<std::size_t> widths,
+                       double weight, Integers integers, Elements* base) {
     const std::optional<JsonView> reference = target.find(name);
     if (!reference || !base) return;
-    const Elements moved = readElements(file, *reference, {3}, integers);
+    const Elements moved = readElements(file, *reference, widths, integers);
+    const std::size_t width = std::min(moved.width, base->width);
     if (moved.count != base->count)
       reference->refuse(fmt::format("has {} elements; expected {}, as POSITION has", moved.count, base->count));
-    for (std::size_t i = 0; i < base->count; ++i) store(*base, i, vec3At(*base, i) + weight * vec3At(moved, i));
+    for (std::size_t i = 0; i < base->count; ++i)
+      for (std::size_t c = 0; c < width; ++c) {
+        float& value = base->values[i * base->width + c];
+        value = static_cast<float>(static_cast<double>(value) + weight * static_cast<double>(moved.at(i, c)));
+      }
   };
   for (std::size_t k = 0; k < weights.size(); ++k) {
     if (weights[k] == 0.0) continue;
     const JsonView target = targets.at(k);
     const Integers units = quantised ? Integers::normalised : Integers::none;
-    add(target, "POSITION", weights[k], quantised ? Integers::any : Integers::none, &positions);
-    add(target, "NORMAL", weights[k], units, normals);
-    add(target, "TANGENT", weights[k], units, tangents);
+    const Integers free = quantised ? Integers::any : Integers::none;
+    add(target, "POSITION", {3}, weights[k], free, posed.positions);
+    add(target, "NORMAL", {3}, weights[k], units, posed.normals);
+    add(target, "TANGENT", {3}, weights[k], units, posed.tangents);
+    add(target, "COLOR_0", {3, 4}, weights[k], Integers::normalised, posed.colours);
+    const Integers mapped = quantised ? Integers::any : Integers::normalised;
+    add(target, "TEXCOORD_0", {2}, weights[k], mapped, posed.uvs[0]);
+    add(target, "TEXCOORD_1", {2}, weights[k], mapped, posed.uvs[1]);
   }
 }
 
@@ -65,8 +79,10 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
-void bend(GltfFile& file, const JsonView& primitive, const std::vector<glm::dmat4>& joints, Elements& positions,
-          Elements* normals, Elements* tangents, std::size_t& unbound) {
+void bend(GltfFile& file, const JsonView& primitive, const std::vector<glm::dmat4>& joints, PosedAttributes& posed,
+          std::size_t& unbound) {
+  Elements& positions = *posed.positions;
+  posed.mirrored.assign(positions.count, false);
   const JsonView attributes = primitive.at("attributes");
   std::vector<Blend> blends(positions.count);
   attributes.at("JOINTS_0");
@@ -98,15 +114,18 @@ void bend(GltfFile& file, const JsonView& primitive, const std::vector<glm::dmat
     const glm::dmat4 moved = bound ? blend.sum / blend.weight : joints[blend.first];
     store(positions, i, glm::dvec3(moved * glm::dvec4(vec3At(positions, i), 1.0)));
     const glm::dmat3 linear(moved);
-    const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    const bool mirrored = mirrors(moved);
+    posed.mirrored[i] = mirrored;
     const auto turn = [&](Elements* elements, const glm::dmat3& by) {
       if (!elements) return;
       const glm::dvec3 turned = by * vec3At(*elements, i);
       const double length = glm::length(turned);
       store(*elements, i, length > 0.0 ? turned / length : glm::dvec3(0.0));
     };
-    turn(normals, side * cofactors(linear));
-    turn(tangents, linear);
+    turn(posed.normals, (mirrored ? -1.0 : 1.0) * cofactors(linear));
+    turn(posed.tangents, linear);
+    // Mirrored, a right-handed frame is a left-handed one.
+    if (posed.tangents && mirrored) posed.tangents->values[i * posed.tangents->width + 3] *= -1.0f;
   }
 }
 
@@ -155,10 +174,10 @@ Pose PoseReader::of(const JsonView& node, const JsonView& mesh) {
   return pose;
 }
 
-void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, Elements& positions,
-               Elements* normals, Elements* tangents, std::size_t& unbound) {
-  if (!pose.weights.empty()) morph(file, primitive, pose.weights, quantised, positions, normals, tangents);
-  if (!pose.joints.empty()) bend(file, primitive, pose.joints, positions, normals, tangents, unbound);
+void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, PosedAttributes& posed,
+               std::size_t& unbound) {
+  if (!pose.weights.empty()) morph(file, primitive, pose.weights, quantised, posed);
+  if (!pose.joints.empty()) bend(file, primitive, pose.joints, posed, unbound);
 }
 
 }  // namespace pellucid::gltf

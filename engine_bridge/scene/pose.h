@@ -35,11 +35,19 @@ class PoseReader {
   std::map<std::size_t, std::vector<glm::dmat4>> skins_;
 };
 
-// Moves a primitive's vertices: morph targets first, then the skin. `normals` and `tangents` may be null.
+// A primitive's vertices, which a pose moves. All but the positions may be null.
+struct PosedAttributes {
+  Elements* positions = nullptr;
+  Elements *normals = nullptr, *tangents = nullptr, *colours = nullptr;
+  Elements* uvs[2] = {nullptr, nullptr};
+  std::vector<bool> mirrored;  // out, by vertex: whether its joints mirror; empty without a skin
+};
+
+// Moves a primitive's vertices: morph targets first, then the skin.
 // Throws InputError: targets or weights that are damaged, joints beyond the skin.
 //   quantised  KHR_mesh_quantization is used
 //   unbound    counts vertices without any weight, which follow their first joint
-void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, Elements& positions,
-               Elements* normals, Elements* tangents, std::size_t& unbound);
+void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, PosedAttributes& posed,
+               std::size_t& unbound);
 
 }  // namespace pellucid::gltf

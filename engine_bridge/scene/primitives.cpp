@@ -83,6 +83,13 @@ void PrimitiveReader::charge(std::size_t elements, const JsonView& user) {
   }
 }
 
+// glTF 2.0, 3.7.2.1: a client SHOULD skip what has none.
+bool PrimitiveReader::hasPositions(const JsonView& primitive) {
+  if (primitive.at("attributes").find("POSITION")) return true;
+  notes_->add(primitive.where() + " has no POSITION and is not drawn");
+  return false;
+}
+
 std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const Pose& pose, bool decode) {
   const std::size_t mode = primitive.unsignedInteger("mode", kTriangles);
   if (mode > kTriangleFan) primitive.at("mode").refuse(fmt::format("is {}; expected 0 to 6", mode));
@@ -91,12 +98,12 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const 
     ++lines_;
     return std::nullopt;
   }
+  if (!hasPositions(primitive)) return std::nullopt;
   draco_.reset();
   if (const auto packed = primitive.extension("KHR_draco_mesh_compression"))
     draco_ = std::make_unique<DracoMesh>(*file_, primitive, *packed);
   inPlace_ = stream_ && !decode && !pose.moves();
   const JsonView attributes = primitive.at("attributes");
-  attributes.at("POSITION");
   const Integers placed = quantised_ ? Integers::any : Integers::none;
   const Integers turned = quantised_ ? Integers::normalised : Integers::none;
   const Integers mapped = quantised_ ? Integers::any : Integers::normalised;
@@ -105,20 +112,28 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const 
   Shared normals = attribute(attributes, "NORMAL", {3}, turned, count);
   // Without normals the file's tangents do not count (glTF 2.0, Meshes).
   Shared tangents = normals ? attribute(attributes, "TANGENT", {4}, turned, count) : nullptr;
-  const Shared uvs[2] = {attribute(attributes, "TEXCOORD_0", {2}, mapped, count),
-                         attribute(attributes, "TEXCOORD_1", {2}, mapped, count)};
-  const Shared colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::normalised, count);
+  Shared uvs[2] = {attribute(attributes, "TEXCOORD_0", {2}, mapped, count),
+                   attribute(attributes, "TEXCOORD_1", {2}, mapped, count)};
+  Shared colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::normalised, count);
+  FileTriangles triangles;
   if (pose.moves()) {
     charge(count * (2 + pose.weights.size()), primitive);
-    const auto copied = [](Shared& from) {
-      auto copy = from ? std::make_shared<Elements>(*from) : nullptr;
-      from = copy;
-      return copy;
+    std::vector<std::shared_ptr<Elements>> copies;
+    const auto copied = [&copies](Shared& from) {
+      if (!from) return static_cast<Elements*>(nullptr);
+      copies.push_back(std::make_shared<Elements>(*from));
+      from = copies.back();
+      return copies.back().get();
     };
-    const auto movedPositions = copied(positions), movedNormals = copied(normals), movedTangents = copied(tangents);
-    applyPose(*file_, primitive, pose, quantised_, *movedPositions, movedNormals.get(), movedTangents.get(), unbound_);
+    PosedAttributes posed;
+    posed.positions = copied(positions);
+    posed.normals = copied(normals);
+    posed.tangents = copied(tangents);
+    posed.colours = copied(colours);
+    for (std::size_t set = 0; set < 2; ++set) posed.uvs[set] = copied(uvs[set]);
+    applyPose(*file_, primitive, pose, quantised_, posed, unbound_);
+    triangles.mirrored = std::move(posed.mirrored);
   }
-  FileTriangles triangles;
   triangles.place = printable(file_->path() + ": " + primitive.where());
   triangles.mode = mode;
   triangles.positions = positions;
@@ -147,8 +162,8 @@ std::optional<Primitive> PrimitiveReader::points(const JsonView& primitive, cons
   if (pose.moves()) notes_->add(primitive.where() + ": points of skins and morph targets stand as the file has them");
   draco_.reset();
   inPlace_ = stream_;
+  if (!hasPositions(primitive)) return std::nullopt;
   const JsonView attributes = primitive.at("attributes");
-  attributes.at("POSITION");
   FilePoints file;
   file.place = printable(file_->path() + ": " + primitive.where());
   file.positions = attribute(attributes, "POSITION", {3}, quantised_ ? Integers::any : Integers::none, 0);

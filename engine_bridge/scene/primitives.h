@@ -24,7 +24,7 @@ class PrimitiveReader {
   //   stream  leave triangles where they are: Primitive::streamed
   PrimitiveReader(GltfFile& file, Notes& notes, bool stream);
 
-  // Empty when the primitive has no triangle to draw (lines, all degenerate), which is noted.
+  // Empty when the primitive has no triangle to draw (lines, all degenerate, no POSITION), which is noted.
   // Throws InputError (damaged accessors, index out of range, absurd growth).
   //   primitive  meshes[i].primitives[j]; its material is left to the caller
   //   decode     even when streaming
@@ -37,6 +37,7 @@ class PrimitiveReader {
   using Shared = std::shared_ptr<const Elements>;
   Shared attribute(const JsonView& attributes, const char* name, std::initializer_list<std::size_t> widths,
                    Integers integers, std::size_t vertexCount);
+  bool hasPositions(const JsonView& primitive);  // what lacks them is noted
   std::optional<Primitive> points(const JsonView& primitive, const Pose& pose);
   void readCorners(const JsonView& primitive, FileTriangles& triangles);
   Primitive decoded(const FileTriangles& triangles);

@@ -2,6 +2,7 @@
 // glTF.
 #pragma once
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
@@ -26,12 +27,20 @@ struct Vertex {
 static_assert(sizeof(Vertex) == 64);
 
 enum class Wrap { repeat, mirror, clamp };
+// glTF's minFilter: within a level, and between levels where there are any.
+enum class Minify { nearest, linear, nearestMipNearest, linearMipNearest, nearestMipLinear, linearMipLinear };
 
-struct Texture {
+// How a file's sampler reads a texture.
+struct Sampling {
+  Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
+  bool nearest = false;  // magFilter
+  Minify minify = Minify::linearMipLinear;
+  auto operator<=>(const Sampling&) const = default;
+};
+
+struct Texture : Sampling {
   std::string name;         // for messages: image name or file
   Image<glm::vec4> texels;  // straight alpha; linear when `colour`, else as stored, 0..1. Row 0 is v = 0.
-  Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
-  bool nearest = false;  // the file's magFilter
 };
 
 struct TextureRef {
@@ -79,6 +88,12 @@ struct Material {
             &normalTexture,    &specularTexture,          &specularColorTexture};
   }
 
+  // Has an inside: KHR_materials_volume, unless `thin` says otherwise.
+  bool hasInterior() const { return thin ? !*thin : volume; }
+  // Both of its sides are drawn. A volume's boundary is met twice, as light enters and leaves, whatever doubleSided
+  // says (KHR_materials_volume).
+  bool bothSides() const { return doubleSided || (!unlit && transmission > 0.0f && hasInterior()); }
+
   // Goes through the transparent pass; opaque primitives belong to the G-buffer.
   bool transparent() const {
     return alphaMode != AlphaMode::opaque || transmission > 0.0f || additive || coverage.value_or(1.0f) < 1.0f;
@@ -113,6 +128,7 @@ struct Instance {
   std::string node;            // for messages
   std::uint32_t identity = 0;  // hash of file, node and mesh
   int file = 0;                // which of the files that were loaded, in their order
+  glm::vec4 colour{1.0f};      // linear, [0,1]: multiplies vertex colours. _COLOR_0 of EXT_mesh_gpu_instancing
 };
 
 enum class LightKind { directional, point, spot };
@@ -147,7 +163,9 @@ struct Scene {
   std::vector<std::string> notes;  // one sentence each, for stderr
 };
 
-// The camera for a picture of this size. glTF: yfov and the *picture's* aspect decide, as the specification says.
+// The camera for a picture of this size, which shows all of the camera's field and stretches nothing: fitted by its
+// height (yfov, ymag), or by its width where the field is wider than the picture. A perspective camera without an
+// aspect has the picture's. Camera::origin says where shapes differ, and which way it was fitted.
 Camera cameraOf(const SceneCamera& camera, const Window& display, double pixelAspect);
 
 }  // namespace pellucid

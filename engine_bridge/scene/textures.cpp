@@ -28,6 +28,25 @@ Wrap wrapOf(const JsonView& sampler, const char* key) {
   }
 }
 
+Minify minifyOf(const JsonView& sampler) {
+  switch (const std::size_t filter = sampler.unsignedInteger("minFilter", 9987)) {
+    case 9728:
+      return Minify::nearest;
+    case 9729:
+      return Minify::linear;
+    case 9984:
+      return Minify::nearestMipNearest;
+    case 9985:
+      return Minify::linearMipNearest;
+    case 9986:
+      return Minify::nearestMipLinear;
+    case 9987:
+      return Minify::linearMipLinear;
+    default:
+      sampler.at("minFilter").refuse(fmt::format("is {}; expected 9728, 9729 or 9984 to 9987", filter));
+  }
+}
+
 bool nearestOf(const JsonView& sampler) {
   const std::size_t filter = sampler.unsignedInteger("magFilter", 9729);
   if (filter != 9728 && filter != 9729) {
@@ -65,45 +84,40 @@ glm::mat3 uvTransform(const JsonView& transform, Notes& notes) {
 
 }  // namespace
 
-TextureRef TextureReader::read(const JsonView& textureInfo, TexelUse use, const std::string& material, bool decode) {
+TextureRef TextureReader::place(const JsonView& textureInfo, const std::string& material, bool decode) const {
   TextureRef result;
   std::size_t set = textureInfo.unsignedInteger("texCoord", 0);
   if (const std::optional<JsonView> transform = textureInfo.extension("KHR_texture_transform")) {
     set = transform->unsignedInteger("texCoord", set);
     result.uvTransform = uvTransform(*transform, *notes_);
   }
-  const JsonView texture = file_->item("textures", textureInfo.at("index"));
   if (!decode) return result;
   if (set > 1) {
     throw MeaningError(printable(fmt::format("{}: material {}: {} uses TEXCOORD_{}; expected 0 or 1", file_->path(),
                                              material, textureInfo.where(), set)));
   }
   result.texCoord = static_cast<int>(set);
-  result.texture = load(texture, use, material);
   return result;
 }
 
-int TextureReader::load(const JsonView& texture, TexelUse use, const std::string& material) {
-  const std::optional<JsonView> source = texture.find("source");
-  if (!source) {
-    const std::optional<JsonView> extensions = texture.find("extensions");
-    const std::vector<std::string> names = extensions ? extensions->keys() : std::vector<std::string>{};
-    throw MeaningError(
-        printable(fmt::format("{}: material {}: {} has no PNG or JPEG source{}; expected one", file_->path(), material,
-                              texture.where(), names.empty() ? "" : ", only " + names.front())));
-  }
-  const std::size_t index = source->index(file_->count("images"), "images");
-  Texture result;
-  if (const std::optional<JsonView> reference = texture.find("sampler")) {
-    const JsonView sampler = file_->item("samplers", *reference);
-    result.wrapS = wrapOf(sampler, "wrapS");
-    result.wrapT = wrapOf(sampler, "wrapT");
-    result.nearest = nearestOf(sampler);
-  }
-  const auto key = std::make_tuple(index, use, result.wrapS, result.wrapT, result.nearest);
-  if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
+TextureRef TextureReader::read(const JsonView& textureInfo, TexelUse use, const std::string& material, bool decode) {
+  TextureRef result = place(textureInfo, material, decode);
+  const JsonView texture = file_->item("textures", textureInfo.at("index"));
+  if (decode) result.texture = load(texture, use, -1.0f, material);
+  return result;
+}
 
+TextureRef TextureReader::readGlossy(const JsonView& textureInfo, float glossiness, const std::string& material,
+                                     bool decode) {
+  TextureRef result = place(textureInfo, material, decode);
+  const JsonView texture = file_->item("textures", textureInfo.at("index"));
+  if (decode) result.texture = load(texture, TexelUse::data, glossiness, material);
+  return result;
+}
+
+Texture TextureReader::open(std::size_t index, TexelUse use, const std::string& material) {
   const JsonView image = file_->item("images", index);
+  Texture result;
   const std::optional<JsonView> uri = image.find("uri");
   const bool external = uri && !isDataUri(uri->string());
   result.name = external ? decodePercent(uri->string()) : image.string("name", "");
@@ -123,6 +137,34 @@ int TextureReader::load(const JsonView& texture, TexelUse use, const std::string
     throw ResourceError(
         fmt::format("{}: takes the file's textures to {} texels; expected at most {}", whose, texels_, kMostTexels));
   }
+  return result;
+}
+
+int TextureReader::load(const JsonView& texture, TexelUse use, float glossiness, const std::string& material) {
+  const std::optional<JsonView> source = texture.find("source");
+  if (!source) {
+    const std::optional<JsonView> extensions = texture.find("extensions");
+    const std::vector<std::string> names = extensions ? extensions->keys() : std::vector<std::string>{};
+    throw MeaningError(
+        printable(fmt::format("{}: material {}: {} has no PNG or JPEG source{}; expected one", file_->path(), material,
+                              texture.where(), names.empty() ? "" : ", only " + names.front())));
+  }
+  const std::size_t index = source->index(file_->count("images"), "images");
+  Sampling sampling;
+  if (const std::optional<JsonView> reference = texture.find("sampler")) {
+    const JsonView sampler = file_->item("samplers", *reference);
+    sampling.wrapS = wrapOf(sampler, "wrapS");
+    sampling.wrapT = wrapOf(sampler, "wrapT");
+    sampling.nearest = nearestOf(sampler);
+    sampling.minify = minifyOf(sampler);
+  }
+  const auto key = std::make_tuple(index, use, sampling, glossiness);
+  if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
+  Texture result = open(index, use, material);
+  static_cast<Sampling&>(result) = sampling;
+  if (glossiness >= 0.0f)
+    for (std::size_t i = 0; i < result.texels.size(); ++i)
+      result.texels[i] = glm::vec4(0.0f, 1.0f - glossiness * result.texels[i].a, 0.0f, 1.0f);
   textures_->push_back(std::move(result));
   const int loaded = static_cast<int>(textures_->size()) - 1;
   loaded_.emplace(key, loaded);

@@ -1,6 +1,7 @@
 // Images of a glTF file through OpenImageIO, decoded once for each use that differs.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -10,11 +11,12 @@
 
 namespace pellucid::gltf {
 
-enum class TexelUse { colour, data };
+enum class TexelUse {
+  colour,  // sRGB to linear, except for images of floating-point type, which are linear as stored
+  data,    // as stored, 0 to 1
+};
 
 // Decodes PNG, JPEG and whatever else OpenImageIO reads from memory, alpha left straight.
-//   colour  sRGB to linear, except for images of floating-point type, which are linear as stored
-//   data    as stored, 0 to 1
 //   whose   begins an error's sentence: "scene.gltf: material glass: image wood.png"
 //   name    its extension tells the format where the content has no signature
 // Throws InputError; texels that are not finite become 0 and are noted.
@@ -24,6 +26,9 @@ Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse us
 // False when a PNG or JPEG ends before its last marker. Other formats' readers notice themselves.
 //   format  "png", "jpg" or another extension, by the content's signature
 bool isWholeImage(const std::vector<std::uint8_t>& bytes, const std::string& format);
+
+// The same WebP with its alpha marked as unused; empty where nothing says that it is used.
+std::optional<std::vector<std::uint8_t>> withoutWebpAlpha(const std::vector<std::uint8_t>& bytes);
 
 // sRGB to linear, IEC 61966-2-1, evaluated in double. Values outside [0, 1] are clamped.
 float linearFromSrgb(float encoded);
@@ -37,14 +42,20 @@ class TextureReader {
   // Throws InputError naming the material and the image.
   //   decode  false leaves the image unread, for materials that nothing draws; the result's texture is then -1
   TextureRef read(const JsonView& textureInfo, TexelUse use, const std::string& material, bool decode);
+  // The roughness, in the green channel, of a texture whose alpha times `glossiness` is glossy.
+  TextureRef readGlossy(const JsonView& textureInfo, float glossiness, const std::string& material, bool decode);
 
  private:
-  int load(const JsonView& texture, TexelUse use, const std::string& material);
+  TextureRef place(const JsonView& textureInfo, const std::string& material, bool decode) const;
+  //   glossiness  below 0 for texels as they are
+  int load(const JsonView& texture, TexelUse use, float glossiness, const std::string& material);
+  Texture open(std::size_t image, TexelUse use, const std::string& material);
 
   GltfFile* file_;
   std::vector<Texture>* textures_;
   Notes* notes_;
-  std::map<std::tuple<std::size_t, TexelUse, Wrap, Wrap, bool>, int> loaded_;
+  // By image, use, sampling and glossiness (below 0: none).
+  std::map<std::tuple<std::size_t, TexelUse, Sampling, float>, int> loaded_;
   std::size_t texels_ = 0;
 };
 

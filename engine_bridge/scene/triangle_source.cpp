@@ -62,4 +62,16 @@ Scene decodedScene(const Scene& scene) {
   return decoded;
 }
 
+std::vector<ColourRange> coloursDrawn(const Scene& scene) {
+  std::vector<ColourRange> own, all;
+  for (const Primitive& primitive : scene.primitives) own.push_back(coloursOf(primitive));
+  all = own;
+  for (const Instance& instance : scene.instances) {
+    const auto number = static_cast<std::size_t>(instance.primitive);
+    all[number].add(own[number].least * instance.colour);
+    all[number].add(own[number].most * instance.colour);
+  }
+  return all;
+}
+
 }  // namespace pellucid

@@ -55,6 +55,8 @@ class TriangleSource {
 void readTriangles(const Primitive& primitive, std::size_t first, std::size_t count, VertexPlaces& places,
                    TriangleBatch& batch);
 ColourRange coloursOf(const Primitive& primitive);
+// By primitive, as its instances colour it.
+std::vector<ColourRange> coloursDrawn(const Scene& scene);
 
 // The scene with the triangles that lie in their files decoded, but for particles: what rays need of a scene that is
 // streamed otherwise. Throws what TriangleSource::read throws.

@@ -1,5 +1,7 @@
 #include "engine_bridge/scene/uri.h"
 
+#include <algorithm>
+
 namespace pellucid::gltf {
 
 namespace {
@@ -13,6 +15,28 @@ int base64Digit(char c) {
   return -1;
 }
 
+bool isSpace(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+// `word` in lower case.
+bool sameWord(std::string_view text, std::string_view word) {
+  return text.size() == word.size() &&
+         std::equal(text.begin(), text.end(), word.begin(), [](char a, char b) { return lower(a) == b; });
+}
+
+constexpr std::string_view kData = "data:", kBase64 = "base64";
+
 int hexDigit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -24,25 +48,25 @@ int hexDigit(char c) {
 
 bool decodeBase64(std::string_view text, std::vector<std::uint8_t>& bytes) {
   bytes.clear();
-  int padding = 0;
-  while (padding < 2 && !text.empty() && text.back() == '=') {
-    text.remove_suffix(1);
-    ++padding;
-  }
-  if (text.size() % 4 == 1) return false;
+  text = trimmed(text);
+  for (int padding = 0; padding < 2 && !text.empty() && text.back() == '='; ++padding)
+    text = trimmed(text.substr(0, text.size() - 1));
   bytes.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t window = 0;
   int bits = 0;
+  std::size_t digits = 0;
   for (const char c : text) {
+    if (isSpace(c)) continue;
     const int digit = base64Digit(c);
     if (digit < 0) return false;
+    ++digits;
     window = ((window << 6) | static_cast<std::uint32_t>(digit)) & 0xffffffu;
     bits += 6;
     if (bits < 8) continue;
     bits -= 8;
     bytes.push_back(static_cast<std::uint8_t>((window >> bits) & 0xffu));
   }
-  return true;
+  return digits % 4 != 1;
 }
 
 std::string decodePercent(std::string_view text) {
@@ -61,15 +85,21 @@ std::string decodePercent(std::string_view text) {
 }
 
 bool isDataUri(std::string_view uri) {
-  return uri.substr(0, 5) == "data:";
+  return sameWord(trimmed(uri).substr(0, kData.size()), kData);
 }
 
 bool decodeDataUri(std::string_view uri, std::vector<std::uint8_t>& bytes) {
-  const std::size_t comma = uri.find(',');
-  if (!isDataUri(uri) || comma == std::string_view::npos) return false;
-  const std::string_view head = uri.substr(5, comma - 5);
-  const std::string_view content = uri.substr(comma + 1);
-  if (head.ends_with(";base64")) return decodeBase64(content, bytes);
+  if (!isDataUri(uri)) return false;
+  const std::string_view all = trimmed(uri).substr(kData.size());
+  const std::size_t comma = all.find(',');
+  if (comma == std::string_view::npos) return false;
+  const std::string_view head = all.substr(0, comma), content = all.substr(comma + 1);
+  const std::size_t last = head.rfind(';');
+  if (last != std::string_view::npos && sameWord(trimmed(head.substr(last + 1)), kBase64)) {
+    // The URI's own escapes come off before what it holds is read (RFC 3986, 2.4).
+    if (content.find('%') == std::string_view::npos) return decodeBase64(content, bytes);
+    return decodeBase64(decodePercent(content), bytes);
+  }
   const std::string plain = decodePercent(content);
   bytes.assign(plain.begin(), plain.end());
   return true;

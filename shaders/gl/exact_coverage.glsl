@@ -1,8 +1,9 @@
 #pragma once
 // Coverage decided from the triangle's own corners, not from corners that the rasteriser has snapped to its sub-pixel
-// grid (1/256 px on Mesa): a pixel centre 0.001 px from an edge falls on the side where it lies. The triangle is drawn a
-// little larger than it is, with attributes extrapolated on its plane, and the fragment stage cuts it exactly; a shared
-// edge belongs to one of its two triangles. How far a triangle is grown decides nothing, as long as it is far enough.
+// grid (1/256 px on Mesa): a pixel centre 0.001 px from an edge falls on the side where it lies. The triangle is drawn
+// a little larger than it is, with attributes extrapolated on its plane, and the fragment stage cuts it exactly; a
+// shared edge belongs to one of its two triangles. How far a triangle is grown decides nothing, as long as it is far
+// enough.
 #ifdef EXACT_COVERAGE
 const float kGrow = 0.0078125f;         // pixels outwards: twice the grid's worst error on either side
 const float kGrowFar = 1.0f;            // the same where a rasteriser has to clip first

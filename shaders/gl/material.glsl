@@ -3,6 +3,7 @@
 // engine_bridge/scene/blocks.h.
 #include "gl/frame.glsl"
 #include "shared/material.glsl"
+#include "shared/mask.glsl"
 
 layout(std140, binding = 1) uniform MaterialValues {
   vec4 baseColor;
@@ -49,10 +50,22 @@ float thicknessTexel() {
   return texture(thicknessTexture, uvOf(4)).g;
 }
 
+#ifdef MASK_UNLEVELLED
+// Of the base texture, under this sample. Takes derivatives.
+float texelsHere() {
+  vec2 at = uvOf(0) * vec2(textureSize(baseTexture, 0));
+  return texelsAcross(dFdx(at), dFdy(at), footprint);
+}
+#endif
+
 // Takes derivatives: to be called before any discard.
 float coverageOf(float alpha) {
 #if defined(MASK_SMOOTH)
-  float covered = maskCoverage(alpha, material.interface_.w, footprint * fwidth(alpha));
+  float rim = footprint * fwidth(alpha);
+#ifdef MASK_UNLEVELLED
+  rim *= rimLeft(texelsHere());
+#endif
+  float covered = maskCoverage(alpha, material.interface_.w, rim);
 #elif defined(MASK_HARD)
   float covered = alpha >= material.interface_.w ? 1.0f : 0.0f;
 #elif defined(BLEND)
@@ -96,7 +109,11 @@ Surface surfaceHere() {
   point.base *= vertexColour;
 #endif
 #ifdef BASE_TEXTURE
+#ifdef BASE_WEIGHTED
+  point.base *= unweighted(texture(baseTexture, uvOf(0)));
+#else
   point.base *= texture(baseTexture, uvOf(0));
+#endif
 #endif
 #ifdef METALLIC_ROUGHNESS_TEXTURE
   vec4 metallicRoughness = texture(metallicRoughnessTexture, uvOf(1));

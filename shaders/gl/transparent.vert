@@ -4,6 +4,9 @@
 #include "gl/vertex_input.glsl"
 uniform mat4 viewFromObject;
 uniform mat3 normalFromObject;
+#ifdef VERTEX_COLOUR
+uniform vec4 instanceColour;  // multiplies the vertices' own
+#endif
 #ifdef POINTS
 uniform float pointScale;  // metres per unit of their radius
 #endif
@@ -218,7 +221,11 @@ void main() {
 #endif
   viewNormal = normalFromObject * normal;
   textureUv = uv;
+#ifdef VERTEX_COLOUR
+  vertexColour = colour * instanceColour;
+#else
   vertexColour = colour;
+#endif
 #ifdef NORMAL_TEXTURE
 #ifndef EXACT_COVERAGE
   vec4 tangent = unpackTangent(packedTangent);

@@ -66,7 +66,6 @@ TEST(Hostile, BoundsOfAccessorsAndViews) {
       {"wrong type", [](Json& j) { j["accessors"][0]["type"] = "VEC2"; }, {"VEC2", "POSITION"}},
       {"integer positions", [](Json& j) { j["accessors"][0]["componentType"] = 5122; }, {"componentType", "float"}},
       {"float indices", [](Json& j) { j["accessors"][1]["componentType"] = 5126; }, {"accessors[1]", "5125"}},
-      {"no position", [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"] = Json::object(); }, {"POSITION"}},
       {"no attributes", [](Json& j) { j["meshes"][0]["primitives"][0].erase("attributes"); }, {"attributes"}},
       {"attributes of another kind", [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"] = 3; }, {"an object"}},
       {"mode beyond the list", [](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }, {"mode", "7"}},
@@ -277,7 +276,8 @@ TEST(Hostile, ExternalBuffers) {
   expectRefusal(with("missing.bin"), 3, {"buffers[0]", "missing.bin"});
   expectRefusal(with("https://example.org/a.bin"), 3, {"buffers[0]", "https"});
   expectRefusal(with("a%00b.bin"), 3, {"buffers[0]", "zero byte"});
-  expectRefusal(with("/dev/zero"), 3, {"buffers[0]", "regular file"});
+  expectRefusal(with("/dev/zero"), 3, {"buffers[0]", "/dev/zero", "--asset-root"});
+  expectRefusal(with("."), 3, {"buffers[0]", "regular file"});
   writeBytes(testFolder() / "short.bin", positions, 20);
   expectRefusal(with("short.bin"), 3, {"buffers[0]", "found 20 bytes"});
 }
@@ -293,9 +293,33 @@ TEST(Uri, Base64) {
   EXPECT_EQ(decoded("Zm9v"), "foo");
   EXPECT_EQ(decoded("Zm9vYmFy"), "foobar");
   EXPECT_EQ(decoded("Zm9vYg"), "foob");
+  EXPECT_EQ(decoded(" Zm9\r\nvYm\tFy \n"), "foobar");
+  EXPECT_EQ(decoded("Zg=\n= "), "f");
   EXPECT_EQ(decoded("Z"), "refused");
-  EXPECT_EQ(decoded("Zm 9"), "refused");
+  EXPECT_EQ(decoded("Zm9vY"), "refused");
+  EXPECT_EQ(decoded("Zm!9"), "refused");
   EXPECT_EQ(decoded("Zg==Zg=="), "refused");
+}
+
+TEST(Uri, DataInEveryCaseAndEscape) {
+  const auto decoded = [](const char* uri) {
+    std::vector<std::uint8_t> bytes;
+    EXPECT_TRUE(gltf::isDataUri(uri)) << uri;
+    return gltf::decodeDataUri(uri, bytes) ? std::string(bytes.begin(), bytes.end()) : std::string("refused");
+  };
+  for (const char* uri :
+       {"data:;base64,Pz8/Pj4+", "DATA:Image/PNG;BASE64,Pz8/Pj4+", "Data:a/b;charset=x;Base64,Pz8%2FPj4%2b",
+        "data:a/b; base64 ,Pz8/\r\n Pj4+", "\n data:;base64,Pz8_Pj4-", "data:;base64,Pz8%2fPj4%2B%0D%0A"})
+    EXPECT_EQ(decoded(uri), "\?\?\?>>>") << uri;
+  EXPECT_EQ(decoded("data:;base64,Zg%3D%3D"), "f");
+  EXPECT_EQ(decoded("data:text/plain,a%20b"), "a b");
+  EXPECT_EQ(decoded("data:text/base64,a+b"), "a+b") << "a type, not an encoding";
+  EXPECT_EQ(decoded("data:;base64,%%%"), "refused");
+  EXPECT_EQ(decoded("data:;base64"), "refused");
+  EXPECT_FALSE(gltf::isDataUri("dat"));
+  EXPECT_FALSE(gltf::isDataUri("database.bin"));
+  EXPECT_EQ(gltf::uriScheme("HTTPS://a/b"), "HTTPS");
+  EXPECT_EQ(gltf::uriScheme("C:\\a.png"), "");
 }
 
 }  // namespace

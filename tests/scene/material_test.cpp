@@ -55,6 +55,84 @@ TEST(Materials, BaseValues) {
   EXPECT_EQ(mask.alphaCutoff, 0.25f);
 }
 
+// The material's reflectance head-on, as shaders/shared/surface.glsl makes it of index and tint.
+glm::vec3 headOn(const Material& material) {
+  const float root = (material.ior - 1.0f) / (material.ior + 1.0f);
+  return glm::min(root * root * material.specularColor, glm::vec3(1.0f)) * material.specular;
+}
+
+TEST(Materials, SpecularGlossinessWinsOverMetallicRoughness) {
+  const Material material = load({{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 1}}},
+                                  {"extensions",
+                                   {{"KHR_materials_ior", {{"ior", 3.0}}},
+                                    {"KHR_materials_pbrSpecularGlossiness",
+                                     {{"diffuseFactor", {0.1, 0.2, 0.3, 0.4}},
+                                      {"specularFactor", {0.9, 0.5, 0.04}},
+                                      {"glossinessFactor", 0.75}}}}}});
+  EXPECT_EQ(material.baseColor, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_EQ(material.metallic, 0.0f);
+  EXPECT_EQ(material.roughness, 0.25f);
+  EXPECT_LT(glm::length(headOn(material) - glm::vec3(0.9f, 0.5f, 0.04f)), 1e-6f);
+  const Material plain = load(withExtension("KHR_materials_pbrSpecularGlossiness", Json::object()));
+  EXPECT_EQ(plain.baseColor, glm::vec4(1.0f));
+  EXPECT_EQ(plain.roughness, 0.0f);
+  EXPECT_LT(glm::length(headOn(plain) - glm::vec3(1.0f)), 1e-6f);
+}
+
+TEST(Materials, UnlitOnesDoNotTransmit) {
+  const Scene scene = sceneWith(
+      {{"name", "glass"},
+       {"extensions",
+        {{"KHR_materials_unlit", Json::object()}, {"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
+  EXPECT_EQ(scene.materials.at(0).transmission, 0.0f);
+  EXPECT_FALSE(scene.materials.at(0).transparent());
+  EXPECT_TRUE(noted(scene, "material glass: is unlit"));
+}
+
+TEST(Materials, BothSidesOfAVolumeAreDrawn) {
+  const auto both = [](bool doubleSided, double transmission, double thickness, bool unlit) {
+    Json material = {{"doubleSided", doubleSided},
+                     {"extensions",
+                      {{"KHR_materials_transmission", {{"transmissionFactor", transmission}}},
+                       {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}};
+    if (unlit) material["extensions"]["KHR_materials_unlit"] = Json::object();
+    return load(material).bothSides();
+  };
+  EXPECT_TRUE(both(true, 0, 0, false));
+  EXPECT_TRUE(both(false, 1, 2, false));
+  EXPECT_FALSE(both(false, 1, 0, false)) << "thin";
+  EXPECT_FALSE(both(false, 0, 2, false)) << "nothing gets in";
+  EXPECT_FALSE(both(false, 1, 2, true));
+  Material thin;
+  thin.transmission = 1.0f;
+  thin.volume = true;
+  EXPECT_TRUE(thin.bothSides());
+  thin.thin = true;
+  EXPECT_FALSE(thin.bothSides());
+}
+
+// Below the cutoff everything is clear: where no alpha reaches it, nothing is there.
+TEST(Materials, AMaskThatNothingReachesIsNotDrawn) {
+  const auto instances = [](double cutoff, double factor, float vertexAlpha) {
+    Builder builder;
+    builder.material({{"name", "leaf"},
+                      {"alphaMode", "MASK"},
+                      {"alphaCutoff", cutoff},
+                      {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, factor}}}}});
+    builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        builder.floats({1, 1, 1, vertexAlpha, 1, 1, 1, 0, 1, 1, 1, 0}, "VEC4", 4);
+    const Scene scene = builder.load();
+    EXPECT_EQ(noted(scene, "material leaf: no alpha reaches its cutoff"), scene.instances.empty());
+    return scene.instances.size();
+  };
+  EXPECT_EQ(instances(1.0, 1.0, 1.0f), 1u);
+  EXPECT_EQ(instances(1.0001, 1.0, 1.0f), 0u);
+  EXPECT_EQ(instances(0.5, 0.5, 1.0f), 1u);
+  EXPECT_EQ(instances(0.5, 0.45, 1.0f), 0u);
+  EXPECT_EQ(instances(0.5, 1.0, 0.25f), 1u) << "a vertex colour counts only where it is above 1's share";
+  EXPECT_EQ(instances(0.0, 0.0, 0.0f), 1u);
+}
+
 TEST(Materials, TransmissionIsTransparentThoughOpaqueByMode) {
   const Material material = load(withExtension("KHR_materials_transmission", {{"transmissionFactor", 0.9}}));
   EXPECT_EQ(material.transmission, 0.9f);
@@ -177,10 +255,12 @@ TEST(Extensions, WhatIsReadOrHarmlessIsNotNoted) {
                       "KHR_materials_dispersion",
                       "KHR_materials_emissive_strength",
                       "KHR_materials_ior",
+                      "KHR_materials_pbrSpecularGlossiness",
                       "KHR_materials_specular",
                       "KHR_materials_transmission",
                       "KHR_materials_unlit",
                       "KHR_materials_volume",
+                      "KHR_node_visibility",
                       "KHR_texture_transform",
                       "KHR_xmp"};
   builder.json["extensionsUsed"] = names;

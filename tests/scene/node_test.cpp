@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "engine_bridge/scene/placed.h"
 #include "tests/scene/builder.h"
 
 namespace pellucid::test {
@@ -15,6 +16,16 @@ void expectNear(glm::dvec3 a, glm::dvec3 b, double tolerance = 1e-12) {
 
 glm::dvec3 apply(const glm::dmat4& matrix, glm::dvec3 p) {
   return glm::dvec3(matrix * glm::dvec4(p, 1.0));
+}
+
+Builder lightBuilder(const Json& light, const Json& node) {
+  Builder builder;
+  builder.json["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({light});
+  builder.json["extensionsRequired"] = Json::array({"KHR_lights_punctual"});
+  Json placed = node;
+  placed["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  builder.json["nodes"] = Json::array({placed});
+  return builder;
 }
 
 TEST(Nodes, TrsAppliesScaleThenRotationThenTranslation) {
@@ -62,13 +73,71 @@ TEST(Nodes, MirroredInstancesGetFlippedWindingAndOthersDoNot) {
   EXPECT_EQ(scene.primitives.size(), 2u) << "one mirrored copy for both mirrored nodes";
 }
 
-TEST(Nodes, ZeroScaleHidesAndIsNoted) {
-  Builder builder;
-  builder.triangle();
-  builder.json["nodes"][0].update({{"name", "gone"}, {"scale", {0, 1, 1}}});
+TEST(Nodes, WhatAScaleLeavesWithoutAreaIsHiddenAndNoted) {
+  for (const Json& scale : {Json{0, 0, 0}, Json{0, 0, 1}, Json{0, 5, 0}}) {
+    Builder builder;
+    builder.triangle();
+    builder.json["nodes"][0].update({{"name", "gone"}, {"scale", scale}});
+    const Scene scene = builder.load();
+    EXPECT_TRUE(scene.instances.empty()) << scale.dump();
+    EXPECT_TRUE(noted(scene, "gone"));
+  }
+}
+
+// What lies in the plane that is left keeps its side, whatever rounding makes of a turned determinant of 0.
+TEST(Nodes, FlattenedThingsAreDrawn) {
+  for (int turn = 0; turn < 40; ++turn) {
+    Builder builder;
+    builder.triangle();
+    const double half = 0.17 * turn, axis = 1.0 / std::sqrt(3.0);
+    builder.json["nodes"][0]["scale"] = {1, 1, turn % 2 == 0 ? 0.0 : 1e-20};
+    builder.json["nodes"].push_back(
+        {{"children", {0}},
+         {"rotation", {axis * std::sin(half), axis * std::sin(half), axis * std::sin(half), std::cos(half)}}});
+    const Scene scene = builder.load();
+    ASSERT_EQ(scene.instances.size(), 1u);
+    const Primitive& primitive = scene.primitives.at(static_cast<std::size_t>(scene.instances[0].primitive));
+    EXPECT_EQ(primitive.indices, (std::vector<std::uint32_t>{0, 1, 2})) << turn;
+    const Placed placed = placeInstances(scene, Camera{}).at(0);
+    const glm::dmat3 linear(placed.viewFromObject);
+    const glm::dvec3 facing = glm::normalize(glm::cross(linear[0], linear[1]));
+    expectNear(glm::normalize(glm::dvec3(placed.normalFromObject * primitive.vertices[0].normal)), facing, 1e-6);
+  }
+}
+
+TEST(Nodes, HiddenNodesHideWhatHangsOnThemButCameras) {
+  Builder builder = lightBuilder({{"type", "point"}}, Json::object());
+  builder.json.erase("extensionsRequired");
+  builder.json["extensionsRequired"] = Json::array({"KHR_lights_punctual", "KHR_node_visibility"});
+  for (int i = 0; i < 3; ++i) builder.triangle();
+  Json& nodes = builder.json["nodes"];
+  nodes[1]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  nodes[1]["children"] = {0, 2, 4};
+  nodes[2]["extensions"]["KHR_node_visibility"]["visible"] = true;  // its parent's false wins
+  nodes[3]["extensions"]["KHR_node_visibility"] = Json::object();
+  nodes.push_back({{"camera", 0}});
+  builder.json["cameras"] = Json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}});
   const Scene scene = builder.load();
-  EXPECT_TRUE(scene.instances.empty());
-  EXPECT_TRUE(noted(scene, "gone"));
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.instances[0].node, "node 3");
+  EXPECT_TRUE(scene.lights.empty());
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_TRUE(scene.notes.empty()) << scene.notes.front();
+}
+
+TEST(Nodes, ALastRowOffByRoundingIsTaken) {
+  const auto loaded = [](double a, double b, double c, double w) {
+    Builder builder;
+    builder.triangle();
+    builder.json["nodes"][0]["matrix"] = {2, 0, 0, a, 0, 2, 0, b, 0, 0, 2, c, 5, 6, 7, w};
+    return builder.load().instances.at(0).worldFromObject;
+  };
+  EXPECT_EQ(loaded(0, 0, 0, 1)[3], glm::dvec4(5, 6, 7, 1));
+  expectNear(glm::dvec3(loaded(1e-9, -1e-7, 1e-6, .9999999)[3]), {5, 6, 7}, 1e-5);
+  EXPECT_EQ(loaded(0, 0, 1e-9, 1.0000001192092896)[3].w, 1.0);
+  for (const double w : {0.0, 0.5, 2.0, 1.001})
+    expectRefusal(refusalOf([&] { loaded(0, 0, 0, w); }), 3, {"nodes[0].matrix", "last row"});
+  expectRefusal(refusalOf([&] { loaded(0, 0.01, 0, 1); }), 3, {"nodes[0].matrix", "last row"});
 }
 
 TEST(Nodes, TheDefaultSceneDecidesWhatIsDrawn) {
@@ -131,8 +200,8 @@ TEST(Cameras, PerspectiveUsesThePicturesAspect) {
   const Json lens = {{"type", "perspective"},
                      {"perspective", {{"yfov", kPi / 2}, {"znear", 0.1}, {"zfar", 50}, {"aspectRatio", 3.0}}}};
   const SceneCamera source = cameraFrom(lens, {{"translation", {0, 0, 500}}}, 0.01);
-  const Camera camera = cameraOf(source, Window{0, 0, 200, 100}, 1.0);
-  EXPECT_NEAR(camera.focal.x, 0.5, 1e-15);
+  const Camera camera = cameraOf(source, Window{0, 0, 300, 100}, 1.0);
+  EXPECT_NEAR(camera.focal.x, 1.0 / 3.0, 1e-15);
   EXPECT_NEAR(camera.focal.y, 1.0, 1e-15);
   EXPECT_FALSE(camera.orthographic);
   EXPECT_DOUBLE_EQ(camera.rangeNear, 0.001);
@@ -140,8 +209,8 @@ TEST(Cameras, PerspectiveUsesThePicturesAspect) {
   EXPECT_EQ(camera.origin, "glTF node shot");
   EXPECT_EQ(source.aspect, 3.0);
   expectNear(apply(camera.viewFromWorld, {0, 0, 0}), {0, 0, -5});
-  // Pixels twice as wide make the picture twice as wide.
-  EXPECT_NEAR(cameraOf(source, Window{-10, 5, 90, 105}, 2.0).focal.x, 0.5, 1e-15);
+  // Pixels three times as wide make the picture three times as wide.
+  EXPECT_NEAR(cameraOf(source, Window{-10, 5, 90, 105}, 3.0).focal.x, 1.0 / 3.0, 1e-15);
   expectRefusal(refusalOf([&] { cameraOf(source, Window{0, 0, 0, 100}, 1.0); }), 4, {"shot", "0x100"});
   expectRefusal(refusalOf([&] { cameraOf(source, Window{0, 0, 10, 10}, std::nan("")); }), 4, {"shot"});
 }
@@ -152,6 +221,37 @@ TEST(Cameras, Orthographic) {
   const Camera camera = cameraOf(cameraFrom(lens, Json::object()), Window{0, 0, 200, 100}, 1.0);
   EXPECT_TRUE(camera.orthographic);
   EXPECT_EQ(camera.focal, glm::dvec2(0.25, 0.5));
+}
+
+// Focal lengths are half a picture over what lies at its edge, one metre away or in metres: a field's half sizes.
+TEST(Cameras, AnotherShapeIsFittedWithoutStretch) {
+  struct Case {
+    double width, height;  // half the field's, at one metre
+    int across, down;
+    const char* said;
+  };
+  const Case cases[] = {{3, 1, 200, 100, "width"}, {1, 1, 200, 100, "height"}, {2, 1, 200, 100, ""},
+                        {1, 1, 100, 200, "width"}, {.5, 1, 100, 200, ""},      {.25, 1, 100, 200, "height"},
+                        {2.0003, 1, 200, 100, ""}};
+  for (const Case& one : cases)
+    for (const bool orthographic : {false, true}) {
+      SceneCamera source;
+      source.name = "shot";
+      source.orthographic = orthographic;
+      source.yfov = 2 * std::atan(one.height);
+      source.aspect = one.width / one.height;
+      source.xmag = one.width;
+      source.ymag = one.height;
+      const Camera camera = cameraOf(source, Window{0, 0, one.across, one.down}, 1.0);
+      const double across = 0.5 * one.across * camera.focal.x, down = 0.5 * one.down * camera.focal.y;
+      EXPECT_NEAR(across / down, 1.0, 1e-3) << "pixels a metre in x and y";
+      EXPECT_LE(one.width * camera.focal.x, 1.0 + 1e-3) << "the field's width lies in the picture";
+      EXPECT_LE(one.height * camera.focal.y, 1.0 + 1e-3) << "its height, too";
+      EXPECT_NEAR(std::max(one.width * camera.focal.x, one.height * camera.focal.y), 1.0, 1e-3) << "and fills it";
+      const bool said = camera.origin.find("aspect") != std::string::npos;
+      EXPECT_EQ(said, *one.said != '\0') << camera.origin;
+      EXPECT_NE(camera.origin.find(one.said), std::string::npos) << camera.origin;
+    }
 }
 
 TEST(Cameras, ScaleDoesNotCount) {
@@ -169,26 +269,36 @@ TEST(Cameras, ScaleDoesNotCount) {
   EXPECT_EQ(camera.zfar, 0.0) << "no zfar is an infinite range";
 }
 
-TEST(Cameras, BrokenLensesAreRefused) {
-  const auto refusal = [](const Json& lens) {
-    return refusalOf([&] { cameraFrom({{"type", "perspective"}, {"perspective", lens}}, Json::object()); });
+// Most files are drawn through another camera: a broken one is left out, and said.
+TEST(Cameras, BrokenOnesAreLeftOutAndNoted) {
+  const auto expectLeftOut = [](const Json& camera, const Json& node, const std::vector<std::string>& words) {
+    Builder builder;
+    const Json good = {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}};
+    builder.json["cameras"] = Json::array({camera, good});
+    Json placed = {{"camera", 0}, {"name", "broken"}};
+    placed.update(node);
+    builder.json["nodes"] = Json::array({placed, {{"camera", 1}, {"name", "good"}}});
+    const Scene scene = builder.load();
+    ASSERT_EQ(scene.cameras.size(), 1u) << camera.dump();
+    EXPECT_EQ(scene.cameras[0].name, "good");
+    EXPECT_TRUE(noted(scene, "the camera of node broken is left out"));
+    for (const std::string& word : words) EXPECT_TRUE(noted(scene, word)) << scene.notes.front();
   };
-  expectRefusal(refusal({{"yfov", 0}, {"znear", 0.1}}), 3, {"yfov"});
-  expectRefusal(refusal({{"yfov", 3.2}, {"znear", 0.1}}), 3, {"yfov"});
-  expectRefusal(refusal({{"yfov", 1}, {"znear", -0.1}}), 3, {"znear"});
-  expectRefusal(refusal({{"yfov", 1}, {"znear", 2}, {"zfar", 1}}), 3, {"znear 2", "zfar 1"});
-  expectRefusal(refusal({{"znear", 2}}), 3, {"yfov"});
-  expectRefusal(refusalOf([] { cameraFrom({{"type", "fisheye"}}, Json::object()); }), 3, {"fisheye"});
-}
-
-Builder lightBuilder(const Json& light, const Json& node) {
-  Builder builder;
-  builder.json["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({light});
-  builder.json["extensionsRequired"] = Json::array({"KHR_lights_punctual"});
-  Json placed = node;
-  placed["extensions"]["KHR_lights_punctual"]["light"] = 0;
-  builder.json["nodes"] = Json::array({placed});
-  return builder;
+  const auto leftOut = [&](const Json& lens, const std::vector<std::string>& words) {
+    expectLeftOut({{"type", "perspective"}, {"perspective", lens}}, Json::object(), words);
+  };
+  leftOut({{"yfov", 0}, {"znear", 0.1}}, {"yfov"});
+  leftOut({{"yfov", 3.2}, {"znear", 0.1}}, {"yfov"});
+  leftOut({{"yfov", 1}, {"znear", -0.1}}, {"znear"});
+  leftOut({{"yfov", 1}, {"znear", 2}, {"zfar", 1}}, {"znear 2", "zfar 1"});
+  leftOut({{"znear", 2}}, {"yfov"});
+  leftOut("glass", {"perspective"});
+  expectLeftOut({{"type", "fisheye"}}, Json::object(), {"fisheye"});
+  expectLeftOut({{"type", "orthographic"}, {"orthographic", {{"xmag", 0}, {"ymag", 1}, {"znear", 0}, {"zfar", 9}}}},
+                Json::object(), {"xmag"});
+  expectLeftOut({{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}, {{"scale", {1, 0, 1}}},
+                {"orientation"});
+  expectLeftOut({{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}, {{"camera", 7}}, {"7"});
 }
 
 TEST(Lights, PhotometricUnitsDirectionsAndRanges) {

@@ -435,7 +435,8 @@ TEST(Instancing, EveryTransformAndMirroredOnesAreTurned) {
   builder.json["nodes"][0]["translation"] = {10, 0, 0};
   Json& attributes = builder.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   attributes = {{"TRANSLATION", builder.floats({0, 0, 0, 0, 1, 0, 0, 2, 0}, "VEC3", 3)},
-                {"SCALE", builder.floats({1, 1, 1, -2, 2, 2, 0, 1, 1}, "VEC3", 3)}};
+                {"SCALE", builder.floats({1, 1, 1, -2, 2, 2, 0, 1, 0}, "VEC3", 3)},
+                {"_COLOR_0", builder.floats({.5f, .25f, 1, 1, 2, -1, 1, 1, 1}, "VEC3", 3)}};
   const Scene scene = builder.load();
   ASSERT_EQ(scene.instances.size(), 2u) << "one has a scale of zero";
   EXPECT_TRUE(noted(scene, "scale of zero"));
@@ -443,8 +444,11 @@ TEST(Instancing, EveryTransformAndMirroredOnesAreTurned) {
   EXPECT_EQ(scene.instances[1].worldFromObject[0][0], -2.0);
   EXPECT_NE(scene.instances[0].primitive, scene.instances[1].primitive) << "mirrored: the winding turns";
   EXPECT_NE(scene.instances[0].identity, scene.instances[1].identity);
+  EXPECT_EQ(scene.instances[0].colour, glm::vec4(.5f, .25f, 1, 1));
+  EXPECT_EQ(scene.instances[1].colour, glm::vec4(1, 1, 0, 1)) << "clamped";
 
   builder.json.erase("buffers");
+  attributes.erase("_COLOR_0");
   attributes["SCALE"] = builder.floats({1, 1, 1}, "VEC3", 3);
   expectRefusal(refusalOf(builder), 3, {"EXT_mesh_gpu_instancing", "3 and 1"});
   builder.json.erase("buffers");

@@ -1,6 +1,7 @@
 // Images, samplers, transforms.
 #include <OpenImageIO/imageio.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -141,6 +142,96 @@ TEST(Textures, Samplers) {
   EXPECT_TRUE(texture.nearest);
   builder.json["samplers"][0]["wrapS"] = 1;
   expectRefusal(refusalOf(builder), 3, {"samplers[0].wrapS", "33071"});
+}
+
+TEST(Textures, MinificationIsReadAndSamplersThatDifferShareAnImage) {
+  const std::pair<int, Minify> filters[] = {{9728, Minify::nearest},           {9729, Minify::linear},
+                                            {9984, Minify::nearestMipNearest}, {9985, Minify::linearMipNearest},
+                                            {9986, Minify::nearestMipLinear},  {9987, Minify::linearMipLinear}};
+  Builder builder = withImage(redPng());
+  EXPECT_EQ(builder.load().textures.at(0).minify, Minify::linearMipLinear);
+  builder.json["textures"][0]["sampler"] = 0;
+  for (const auto& [code, minify] : filters) {
+    builder.json["samplers"] = Json::array({{{"minFilter", code}}});
+    EXPECT_EQ(builder.load().textures.at(0).minify, minify);
+  }
+  builder.json["samplers"][0]["minFilter"] = 9990;
+  expectRefusal(refusalOf(builder), 3, {"samplers[0].minFilter", "9990"});
+  builder.json["samplers"][0]["minFilter"] = 9728;
+  builder.json["textures"].push_back({{"source", 0}});
+  builder.json["materials"][0]["emissiveTexture"] = {{"index", 1}};
+  EXPECT_EQ(builder.load().textures.size(), 2u) << "one for each way of reading it";
+}
+
+TEST(Textures, GlossinessBecomesRoughness) {
+  Builder builder =
+      withImage(encode<std::uint8_t>("png", 2, 1, 4, OIIO::TypeDesc::UINT8, {128, 64, 32, 255, 0, 255, 1, 51}));
+  Json& gloss = builder.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+  gloss = {
+      {"glossinessFactor", 0.5}, {"diffuseTexture", {{"index", 0}}}, {"specularGlossinessTexture", {{"index", 0}}}};
+  const Scene scene = builder.load();
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.roughness, 1.0f);
+  EXPECT_EQ(material.baseColorTexture.texture, material.specularColorTexture.texture);
+  const Texture& roughness = scene.textures.at(static_cast<std::size_t>(material.metallicRoughnessTexture.texture));
+  EXPECT_NEAR(roughness.texels.at(0, 0).g, 0.5f, 1e-6f);
+  EXPECT_NEAR(roughness.texels.at(1, 0).g, 0.9f, 1e-6f);
+  EXPECT_NEAR(static_cast<double>(
+                  scene.textures.at(static_cast<std::size_t>(material.specularColorTexture.texture)).texels.at(0, 0).r),
+              srgb(128 / 255.0), 1e-6);
+}
+
+// OpenImageIO hands a WebP's colours out multiplied by alpha; glTF's are straight.
+TEST(Textures, WebpKeepsItsStraightColours) {
+  // 4x4 lossless WebP of one colour each: RIFF, VP8L with five prefix codes of one symbol.
+  const auto lossless = [](std::array<int, 4> rgba, bool extended) {
+    std::vector<int> bits;
+    const auto put = [&](int value, int count) {
+      for (int i = 0; i < count; ++i) bits.push_back((value >> i) & 1);
+    };
+    put(3, 14), put(3, 14), put(1, 1), put(0, 3), put(0, 3);
+    for (const int symbol : {rgba[1], rgba[0], rgba[2], rgba[3]}) put(1, 1), put(0, 1), put(1, 1), put(symbol, 8);
+    put(1, 1), put(0, 1), put(0, 1), put(0, 1);
+    std::vector<std::uint8_t> data = {0x2f};
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      if (i % 8 == 0) data.push_back(0);
+      data.back() = static_cast<std::uint8_t>(data.back() | bits[i] << (i % 8));
+    }
+    std::vector<std::uint8_t> chunks;
+    const auto chunk = [&](const std::string& kind, const std::vector<std::uint8_t>& content) {
+      chunks.insert(chunks.end(), kind.begin(), kind.end());
+      for (int i = 0; i < 4; ++i) chunks.push_back(static_cast<std::uint8_t>(content.size() >> (8 * i)));
+      chunks.insert(chunks.end(), content.begin(), content.end());
+      if (content.size() % 2) chunks.push_back(0);
+    };
+    if (extended) chunk("VP8X", {0x10, 0, 0, 0, 3, 0, 0, 3, 0, 0});
+    chunk("VP8L", data);
+    std::vector<std::uint8_t> file = {'R', 'I', 'F', 'F'};
+    for (int i = 0; i < 4; ++i) file.push_back(static_cast<std::uint8_t>((chunks.size() + 4) >> (8 * i)));
+    for (const char c : std::string("WEBP")) file.push_back(static_cast<std::uint8_t>(c));
+    file.insert(file.end(), chunks.begin(), chunks.end());
+    return file;
+  };
+  for (const bool extended : {false, true})
+    for (const std::array<int, 4> rgba : {std::array{255, 128, 64, 128}, std::array{10, 3, 200, 7},
+                                          std::array{90, 17, 1, 255}, std::array{1, 2, 3, 0}}) {
+      const Texture texture = withImage(lossless(rgba, extended)).load().textures.at(0);
+      const glm::vec4 texel = texture.texels.at(2, 1);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(static_cast<double>(texel[c]), srgb(rgba[static_cast<std::size_t>(c)] / 255.0), 1e-6);
+      EXPECT_EQ(texel.a, static_cast<float>(rgba[3]) / 255.0f);
+    }
+  // A lossy one, its alpha in a chunk beside: the colours of noise come as they do without an alpha.
+  std::vector<std::uint8_t> rgba, rgb;
+  for (int i = 0; i < 32 * 32; ++i)
+    for (const int v : {i % 251, i * 7 % 200, 90, i * 3 % 256}) rgba.push_back(static_cast<std::uint8_t>(v));
+  const Texture straight =
+      withImage(encode<std::uint8_t>("webp", 32, 32, 4, OIIO::TypeDesc::UINT8, rgba)).load().textures.at(0);
+  double worst = 0;
+  for (int i = 0; i < 32 * 32; ++i)
+    worst =
+        std::max(worst, std::abs(static_cast<double>(straight.texels.at(i % 32, i / 32).a) - (i * 3 % 256) / 255.0));
+  EXPECT_LT(worst, 1e-6) << "alpha is kept without loss";
 }
 
 TEST(Textures, TransformAndItsTexCoord) {
