@@ -9,6 +9,7 @@
 #include <map>
 
 #include "engine_bridge/embree/ray_fragments.h"
+#include "engine_bridge/gl/transparent_pass.h"
 #include "engine_bridge/scene/surroundings.h"
 #include "tests/embree/scenes.h"
 

@@ -1,5 +1,6 @@
 // Fragment lists by rays against those of the GL pass.
 #include "engine_bridge/embree/ray_fragments.h"
+#include "engine_bridge/gl/transparent_pass.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

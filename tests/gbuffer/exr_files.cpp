@@ -180,20 +180,8 @@ Contents readFile(const std::string& path) {
   return contents;
 }
 
-std::string slurp(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 void spit(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
-}
-
-std::string assets() {
-  const std::string folder = std::string(PELLUCID_SOURCE_DIR) + "/../shared/assets";
-  return std::filesystem::is_directory(folder) ? folder : "";
 }
 
 }  // namespace pellucid::test

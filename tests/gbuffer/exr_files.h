@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gbuffer/image.h"
+#include "tests/support/program.h"
 
 namespace pellucid::test {
 
@@ -65,11 +66,6 @@ struct Contents {
   std::map<std::string, std::vector<std::byte>> planes;  // "part/channel" -> bytes of level 0; deep parts have none
 };
 Contents readFile(const std::string& path);
-// Raw file, for tests that copy whole files.
-std::string slurp(const std::string& path);
 void spit(const std::string& path, const std::string& bytes);
-
-// Folder of shared inputs, or "" when it is not there.
-std::string assets();
 
 }  // namespace pellucid::test

@@ -8,6 +8,7 @@
 #include "composite/fold.h"
 #include "engine_bridge/embree/ray_fragments.h"
 #include "engine_bridge/embree/surface_shadows.h"
+#include "engine_bridge/gl/transparent_pass.h"
 #include "tests/shadow/scenes.h"
 #include "tests/support/random.h"
 
