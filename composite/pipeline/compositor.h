@@ -37,7 +37,8 @@ class Compositor {
   shading::WeightSettings fitWeight(Request request);
   // Composites. The picture's bits do not depend on what was run before.
   Result run(const Request& request);
-  // The sums alone, pass by pass in order, as `resolve` takes them. Of a flat picture: throws UsageError for a deep one.
+  // The sums alone, pass by pass in order, as `resolve` takes them. Of a flat picture: throws UsageError for a deep
+  // one.
   //   each  takes them as they are made
   RunCounts accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each);
   // Every fragment at pixel centres, in windows that together cover the data window.

@@ -68,9 +68,9 @@ TEST(WeightTable, EveryRowIsParsedAndNoOtherTextIs) {
     EXPECT_NE(weightsHelp().find(row.help), std::string::npos) << row.name;
     const std::string wrong = row.parameter ? row.name : std::string(row.name) + ":1";
     EXPECT_THROW(parseWeight(wrong, kGiven), UsageError) << wrong;
-    if (row.parameter)
-      for (const char* number : {":", ":x", ":inf", ":1 ", ":-1"})
-        EXPECT_THROW(parseWeight(row.name + std::string(number), kGiven), UsageError) << row.name << number;
+    if (!row.parameter) continue;
+    for (const char* number : {":", ":x", ":inf", ":1 ", ":-1"})
+      EXPECT_THROW(parseWeight(row.name + std::string(number), kGiven), UsageError) << row.name << number;
   }
   for (const char* none : {"", "eq", "eq55", "EQ5", ":1"}) EXPECT_THROW(parseWeight(none, kGiven), UsageError) << none;
 }

@@ -103,7 +103,9 @@ TEST(WeightedColour, MinifiedClearTexelsLendNone) {
           EXPECT_NEAR(seen.colour[i].b, 1.0f, 1e-5f);
         }
         // What a mask covers where no level holds its pattern is not a matter of colour.
-        if (mode == kBlend) EXPECT_NEAR(covered, 0.5, 1e-3) << size << " texels a pixel";
+        if (mode == kBlend) {
+          EXPECT_NEAR(covered, 0.5, 1e-3) << size << " texels a pixel";
+        }
       }
 }
 
@@ -189,7 +191,9 @@ TEST(CutOuts, WithoutLevelsTheTestAloneDecides) {
       }
       // 4096 tests of a part p of them are off by sqrt(p (1 - p)) / 64: .008. Between texels, filtering narrows what
       // lies above a cut near 1.
-      if (pattern.cutoff < 0.9f) EXPECT_NEAR(covered, painted, 0.03) << pattern.name;
+      if (pattern.cutoff < 0.9f) {
+        EXPECT_NEAR(covered, painted, 0.03) << pattern.name;
+      }
     }
 }
 
