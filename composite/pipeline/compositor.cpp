@@ -168,8 +168,8 @@ shading::WeightSettings Compositor::fitWeight(Request request) {
 RunCounts Compositor::accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each) {
   if (shot_->deepOpaque)
     throw UsageError(request.shot.opaque +
-                     ": accumulate: found a deep picture, each of whose samples would need planes of its own, expected "
-                     "a flat one: composite takes both");
+                     ": accumulate: found deep samples, each of which would need planes of its own, expected a flat "
+                     "picture: composite takes both");
   const Run run = prepare(request);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
   const OtherSolids others(request.heldOutBy, gbuffer, run.plan.passes);

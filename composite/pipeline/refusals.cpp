@@ -49,38 +49,50 @@ bool tracesSamples(const Request& request) {
 
 const std::vector<Refusal>& refusals() {
   static const std::vector<Refusal> table{
-      {"--weight", "--method {}", "its layers are not weighed",
+      {"--weight", "a weight", "--method {}", "none, or a method that weighs", "its layers are not weighed",
        [](const Request& r) { return (r.sums.weight || r.sums.fitWeight) && !weighs(r); }},
-      {"--weight-range", "--method {}", "its layers are not weighed",
+      {"--weight-range", "a range", "--method {}", "none, or a method that weighs", "its layers are not weighed",
        [](const Request& r) { return r.sums.weightRange && !weighs(r); }},
-      {"--weight-range", "a weight without a range", "only eq5, eq10 and eq10z read one",
+      {"--weight-range", "a range", "a weight without one", "eq5, eq10 or eq10z", "the others read no range",
        [](const Request& r) { return r.sums.weightRange && weighs(r) && !readsRange(r.sums); }},
-      {"--normalisation", "--method {}", "it averages in a way of its own, or not at all",
+      {"--normalisation", "one", "--method {}", "none, or a method that normalises",
+       "it averages in a way of its own, or not at all",
        [](const Request& r) { return r.sums.normalisation && !normalises(r); }},
-      {"--self-modulation", "--method {}", "it corrects the weighted sum of the transparent pass, which is not made",
+      {"--self-modulation", "a number", "--method {}", "none, or a method that is a weighted sum",
+       "it corrects the weighted sum of the transparent pass, which is not made",
        [](const Request& r) { return r.sums.selfModulation && !hasSums(r); }},
-      {"--precision published", "--method {}", "its targets hold the phenomenological sums alone",
-       [](const Request& r) { return r.tier == Tier::published && (!paintsBy<PaintSums>(r)); }},
-      {"--precision published", "--normalisation spectral", "its targets have one denominator for all channels",
+      {"--precision", "published", "--tolerance", "float or exact", "its targets hold no bound of an error",
+       [](const Request& r) { return r.tier == Tier::published && paintsBy<PaintWithin>(r); }},
+      {"--precision", "published", "--systems", "float or exact", "its targets hold one pass over everything",
+       [](const Request& r) { return r.tier == Tier::published && paintsBy<PaintSystems>(r); }},
+      {"--precision", "published", "--method {}", "float or exact",
+       "its targets hold the phenomenological sums alone",
+       [](const Request& r) {
+         return r.tier == Tier::published && !paintsBy<PaintSums>(r) && !paintsBy<PaintWithin>(r) &&
+                !paintsBy<PaintSystems>(r);
+       }},
+      {"--precision", "published", "--normalisation spectral", "float or exact",
+       "its targets have one denominator for all channels",
        [](const Request& r) {
          return r.tier == Tier::published && r.sums.normalisation == shading::PLD_NORMALISE_SPECTRAL;
        }},
-      {"--precision exact", "--method unsorted",
+      {"--precision", "exact", "--method unsorted", "float",
        "it composites in the order submitted, which exact promises not to show",
        [](const Request& r) { return r.tier == Tier::exact && !takesExact(r); }},
-      {"--tolerance", "--normalisation published",
-       "it has no certificate: one denominator for all channels has no bound",
+      {"--tolerance", "a tolerance", "--normalisation published", "spectral",
+       "one denominator for all channels has no bound, and so no certificate",
        [](const Request& r) {
          return paintsBy<PaintWithin>(r) && r.sums.normalisation == shading::PLD_NORMALISE_PUBLISHED;
        }},
-      {"--resolve gl", "--method {}", "it has no sums to resolve",
+      {"--resolve", "gl", "--method {}", "cpu", "it has no sums to resolve",
        [](const Request& r) { return r.resolveOnDevice && !hasSums(r); }},
-      {"--samples", "--aa", "every pass holds as many samples: expected a multiple of --aa", tracesSamples},
-      {"--gather exact", "--diffusion-kernel disc", "the disc has one gather, and its taps are few",
+      {"--samples", "a number", "--aa", "a multiple of --aa", "every pass holds as many samples", tracesSamples},
+      {"--gather", "exact", "--diffusion-kernel disc", "fast", "the disc has one gather, and its taps are few",
        [](const Request& r) { return r.lookup.exact && r.lookup.kernel == shading::PLD_DIFFUSE_DISC; }},
-      {"--layers depth, weight, count", "--precision published", "its targets do not hold them",
+      {"--layers", "depth, weight or count", "--precision published", "float or exact", "its targets do not hold them",
        [](const Request& r) { return r.tier == Tier::published && asksPlanesOf(r); }},
-      {"--occlusion apart", "--precision published", "rims are summed in floats",
+      {"--occlusion", "apart", "--precision published", "on, or --precision float or exact",
+       "rims are summed in floats",
        [](const Request& r) { return r.tier == Tier::published && r.foliage.rule == FoliageRule::apart; }},
   };
   return table;

@@ -8,8 +8,10 @@
 namespace pellucid {
 
 struct Refusal {
-  const char* flag;  // what cannot be honoured
-  const char* with;  // beside what; {} stands for the method that was asked for
+  const char* flag;
+  const char* found;     // what of it cannot be honoured
+  const char* with;      // beside what; {} stands for the method that was asked for
+  const char* expected;  // what can
   const char* why;
   bool (*applies)(const Request& request);
 };

@@ -52,7 +52,7 @@ void occludeRims(const RimRequest& request, const RimPlanes& rims, const GBuffer
 void validate(const PlanesRequest& request) {
   if (request.lookup.exact && request.lookup.kernel == shading::PLD_DIFFUSE_DISC)
     throw UsageError(
-        "--gather exact: found it with --diffusion-kernel disc: the disc has one gather, and its taps are "
+        "--gather: found exact with --diffusion-kernel disc, expected fast: the disc has one gather, and its taps are "
         "few");
   const RimRequest& rims = request.rims;
   if (rims.infer == false && (rims.form || rims.fromFile || rims.radius))

@@ -13,8 +13,8 @@ namespace pellucid {
 void validate(const Request& request) {
   for (const Refusal& row : refusals())
     if (row.applies(request))
-      throw UsageError(fmt::format("{}: found it with {}: {}", row.flag,
-                                   fmt::format(fmt::runtime(row.with), request.method), row.why));
+      throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
+                                   fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
   checkShadows(request.shadows);
   checkFoliage(request.foliage);
   if (request.fog.on() && request.fog.file.empty())

@@ -18,15 +18,13 @@ using namespace test;
 
 class Equivalence : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
+  void SetUp() override {
     folder = freshFolder("pipeline-equivalence");
     files = writeShotFiles(folder);
   }
-  static ShotFiles files;
-  static std::string folder;
+  ShotFiles files;
+  std::string folder;
 };
-ShotFiles Equivalence::files;
-std::string Equivalence::folder;
 
 Image<glm::vec4> pictureOf(const Request& request) {
   Compositor compositor(request);

@@ -86,10 +86,9 @@ struct PictureKind {
 
 class Product : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { files = writeShotFiles(freshFolder("pipeline-product")); }
-  static ShotFiles files;
+  void SetUp() override { files = writeShotFiles(freshFolder("pipeline-product")); }
+  ShotFiles files;
 };
-ShotFiles Product::files;
 
 // Which row refuses it, or null.
 const Refusal* refusedBy(const Request& request) {
@@ -169,7 +168,8 @@ TEST_F(Product, TheReadmeListsEveryRefusal) {
     std::string with = row.with;
     const auto braces = with.find("{}");
     if (braces != std::string::npos) with.replace(braces, 2, "NAME");
-    const std::string line = "| `" + std::string(row.flag) + "` | " + with + " | " + row.why + " |";
+    const std::string line = "| `" + std::string(row.flag) + "` | " + row.found + " | " + with + " | " + row.expected +
+                             " | " + row.why + " |";
     EXPECT_NE(readme.find(line), std::string::npos) << line;
   }
 }

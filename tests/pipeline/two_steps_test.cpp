@@ -17,11 +17,11 @@ using namespace test;
 
 class TwoSteps : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
+  void SetUp() override {
     folder = freshFolder("pipeline-two-steps");
     files = writeShotFiles(folder);
   }
-  static Image<glm::vec4> inTwoSteps(const Request& request, std::vector<std::string> planes = {}) {
+  Image<glm::vec4> inTwoSteps(const Request& request, std::vector<std::string> planes = {}) const {
     if (planes.empty()) {
       planes = {folder + "/planes.exr"};
       accumulate(request, planes[0]);
@@ -42,11 +42,9 @@ class TwoSteps : public ::testing::Test {
     Compositor compositor(request);
     return compositor.run(request).picture.rgba;
   }
-  static ShotFiles files;
-  static std::string folder;
+  ShotFiles files;
+  std::string folder;
 };
-ShotFiles TwoSteps::files;
-std::string TwoSteps::folder;
 
 std::size_t differing(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
   std::size_t count = 0;

@@ -44,7 +44,7 @@ TEST(ScatterProgram, FlagsThatCannotBeHonouredAreUsageErrors) {
                                                        {"--diffusion-scale", "0.3"},
                                                        {"--diffusion-scale", "0:1"},
                                                        {"--diffusion-kernel", "disc", "--gather", "exact"},
-                                                       {"--precision", "exact", "--method", "weighted"},
+                                                       {"--precision", "exact", "--method", "unsorted"},
                                                        {"--precision", "published", "--method", "weighted"},
                                                        {"--precision", "published", "--method", "over"},
                                                        {"--precision", "published", "--normalisation", "spectral"},

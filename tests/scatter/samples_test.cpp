@@ -43,9 +43,12 @@ TEST(EverySample, PruningChangesNoBit) {
     nlohmann::json pruned;
     for (const bool published : {false, true}) {
       const std::string precision = published ? "published" : "float";
-      pruned = composite(folder, name, "pruned.exr", {"--aa", "1", "--precision", precision});
-      const nlohmann::json full =
-          composite(folder, name, "full.exr", {"--aa", "1", "--precision", precision, "--no-prune"});
+      std::vector<std::string> flags{"--aa", "1", "--precision", precision};
+      // Texels of low resolution are floats in either tier: the layout of 112 bits is that of full resolution.
+      if (published && (name == "mixed" || name == "street")) flags.insert(flags.end(), {"--low-res", "1"});
+      pruned = composite(folder, name, "pruned.exr", flags);
+      flags.emplace_back("--no-prune");
+      const nlohmann::json full = composite(folder, name, "full.exr", flags);
       EXPECT_TRUE(slurp(folder + "/pruned.exr") == slurp(folder + "/full.exr")) << name << ' ' << precision;
       bits[published][0] = pruned["bitsPerPixel"];
       bits[published][1] = full["bitsPerPixel"];

@@ -220,8 +220,9 @@ TEST(ShadowMaps, CausticBall) {
     const auto at = [&](double x) { return maps.onOpaque(0, glm::vec3(viewOf(camera, {x, 0, .01}))); };
     const glm::vec3 centre = at(.01), rim = at(.97);
     const glm::vec3 truth = rays.visibility(0, viewOf(camera, {.97, 0, .01}));
-    // The plain shadow: 1 - alpha (1 - t), t with its Fresnel loss head-on.
-    const glm::vec3 plain = glm::vec3(.9f, .6f, .3f) * (1.0f - shading::fresnelDielectric(1.0f, ior));
+    // The plain shadow: both sides of the volume, 1 - alpha (1 - t) each, t with its Fresnel loss head-on.
+    const glm::vec3 side = glm::vec3(.9f, .6f, .3f) * (1.0f - shading::fresnelDielectric(1.0f, ior));
+    const glm::vec3 plain = side * side;
     std::printf("ior %.1f: centre %.4f (plain %.4f), rim %.4f (rays %.4f)\n", static_cast<double>(ior),
                 static_cast<double>(centre.g), static_cast<double>(plain.g), static_cast<double>(rim.g),
                 static_cast<double>(truth.g));

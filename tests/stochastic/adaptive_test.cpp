@@ -100,8 +100,6 @@ TEST_F(Adaptive, WhatItCannotHonourIsAnError) {
   };
   refused({"--samples-adaptive", ".01"}, "draws no random numbers");
   refused({"--method", "stochastic", "--samples-adaptive", "0"}, "--samples-adaptive");
-  refused({"--method", "stochastic", "--samples-adaptive", ".01", "--sampled-on", "gl"}, "as many samples everywhere");
-  refused({"--method", "stochastic", "--sampled-on", "gl", "--fog", "density=.1"}, "fog is no triangle");
 }
 
 // Refraction and diffusion are looked up by the same scattering layers.

@@ -102,8 +102,7 @@ TEST_F(StochasticVerb, FlagsThatItCannotHonourAreErrors) {
   refused({"--method", "over", "--seed", "3"}, "draws no random numbers");
   refused({"--method", "over", "--sampled-on", "gl"}, "draws no random numbers");
   refused({"--samples", "8"}, "draws no random numbers");
-  refused({"--method", "stochastic", "--weight", "eq7"}, "does not weigh");
-  refused({"--method", "stochastic", "--precision", "exact"}, "--precision");
+  refused({"--method", "stochastic", "--weight", "eq7"}, "its layers are not weighed");
   refused({"--method", "stochastic", "--tolerance", ".01"}, "no certificate");
 }
 

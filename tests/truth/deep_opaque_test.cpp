@@ -161,7 +161,7 @@ TEST_F(DeepPicture, WhatCannotTakeItSaysSo) {
   writeGlb(folder + "/pane.glb", {Quad{}});
   EXPECT_NE(run({"accumulate", "opaque.exr", "pane.glb", "-o", "out.exr"}, 2).err.find("deep samples"),
             std::string::npos);
-  EXPECT_NE(run({"composite", "opaque.exr", "smoke.exr", "-o", "out.exr", "--depth-kind", "inverse"}, 2)
+  EXPECT_NE(run({"composite", "opaque.exr", "smoke.exr", "-o", "out.exr", "--depth-kind", "auto"}, 2)
                 .err.find("--depth-kind"),
             std::string::npos);
 }
