@@ -17,6 +17,7 @@ struct OitInfo {
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
   std::string tier = "float";  // "float", "exact" or "published"
   std::string solidHash;       // of the solid plane: sums behind different solids do not add
+  std::string places;          // of a deep picture's samples, and of which; "" for a flat picture's pixels
 };
 
 // RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl and refraction.glsl pack them; every

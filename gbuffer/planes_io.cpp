@@ -55,6 +55,7 @@ class HeaderReader {
     if (values.size() != count) refuse(name, from);
     return values;
   }
+  const ExrPart& part() const { return part_; }
   [[noreturn]] void refuse(const char* name, const std::string& found) const {
     throw MeaningError(
         fmt::format("{}: attribute {}: found '{}', expected what accumulate writes", path_, name, found));
@@ -84,6 +85,7 @@ OitInfo infoOf(const HeaderReader& header) {
   info.method = header.text("pellucid:method");
   info.tier = header.text("pellucid:tier");
   info.solidHash = header.text("pellucid:solidHash");
+  info.places = header.part().text("pellucid:places").value_or("");
   const std::string normalisation = header.text("pellucid:normalisation");
   if (normalisation != "spectral" && normalisation != "published")
     header.refuse("pellucid:normalisation", normalisation);
@@ -171,6 +173,7 @@ NewExr fileOf(const OitPlanes& planes, const RimPlanes& rims) {
       {"pellucid:camera", cameraText(planes.camera)},
       {"pellucid:cameraOrigin", planes.camera.origin},
   };
+  if (!planes.info.places.empty()) file.attributes["pellucid:places"] = planes.info.places;
   float matrices[2][4][4];
   cameraToExr(planes.camera, matrices[0], matrices[1]);
   file.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);
@@ -208,6 +211,13 @@ OitPlanes planesOf(const ExrPart& part, const std::string& path, RimPlanes* rims
 }
 
 constexpr const char* kPass = "pellucid:pass";
+constexpr const char* kScatter = ", what scatters";  // after the pass, of a part with PassPlanes::scatter
+
+bool isScatter(const ExrPart& part) {
+  const std::string text = part.text(kPass).value_or(""), end = kScatter;
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
 // The beauty as shadows leave it, and where; all of them or none.
 constexpr const char* kRelit[] = {"oit.relit.R", "oit.relit.G", "oit.relit.B", "oit.relit.changed"};
 
@@ -259,7 +269,7 @@ OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
 }
 
 void writePasses(const std::string& path, const std::vector<PassPlanes>& passes) {
-  if (passes.size() == 1) {
+  if (passes.size() == 1 && !passes[0].scatter.scatters()) {
     writeNewExr(path, fileOf(passes[0]));
     return;
   }
@@ -268,6 +278,10 @@ void writePasses(const std::string& path, const std::vector<PassPlanes>& passes)
     parts.push_back(fileOf(passes[i]));
     parts.back().part = fmt::format("pass{:04d}", i + 1);
     parts.back().attributes[kPass] = passText(i, passes.size());
+    if (!passes[i].scatter.scatters()) continue;
+    parts.push_back(fileOf(passes[i].scatter, {}));
+    parts.back().part = fmt::format("pass{:04d}.scatter", i + 1);
+    parts.back().attributes[kPass] = passText(i, passes.size()) + kScatter;
   }
   writeNewExr(path, parts);
 }
@@ -275,17 +289,25 @@ void writePasses(const std::string& path, const std::vector<PassPlanes>& passes)
 std::vector<PassPlanes> readPasses(const std::string& path) {
   const ExrDocument document = readExr(path);
   std::vector<PassPlanes> passes;
+  const auto count = static_cast<std::size_t>(std::count_if(document.parts.begin(), document.parts.end(),
+                                                            [](const ExrPart& part) { return !isScatter(part); }));
   for (std::size_t i = 0; i < document.parts.size(); ++i) {
     const ExrPart& part = document.parts[i];
-    const std::string expected = passText(i, document.parts.size());
+    const bool scatter = isScatter(part) && !passes.empty();
+    const std::string expected =
+        scatter ? passText(passes.size() - 1, count) + kScatter : passText(passes.size(), count);
     const std::string found = part.text(kPass).value_or(passText(0, 1));
     if (found != expected)
       throw MeaningError(fmt::format("{}: part {}: found pass {}, expected {}: all passes of one picture, in order",
                                      path, i, found, expected));
+    if (scatter) {
+      passes.back().scatter = planesOf(part, path, nullptr);
+      continue;
+    }
     PassPlanes pass;
     pass.planes = planesOf(part, path, &pass.rims);
     pass.relit = relitOf(part, path);
-    if (i > 0 && pass.planes.data != passes[0].planes.data)
+    if (!passes.empty() && pass.planes.data != passes[0].planes.data)
       throw MeaningError(
           fmt::format("{}: part {}: found another data window than the first part's, expected the same", path, i));
     passes.push_back(std::move(pass));

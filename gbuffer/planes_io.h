@@ -19,11 +19,13 @@ OitPlanes readPlanes(const std::string& path, RimPlanes* rims = nullptr);
 // One jittered pass of several, and what rims get from around where that is kept apart.
 struct PassPlanes {
   OitPlanes planes;
+  OitPlanes
+      scatter;  // of a deep picture, where layers look it up elsewhere: of its pixels, as planes are of its places
   RimPlanes rims;
   // Of the first pass alone: the beauty as the layers' shadows leave it, and 1 where they changed it. Empty: nowhere.
   Image<glm::vec4> relit;
 };
-// A part for each pass, in order; a single one as writePlanes() does it.
+// A part for each pass, in order, and one more after it where it has `scatter`; a single one as writePlanes() does it.
 void writePasses(const std::string& path, const std::vector<PassPlanes>& passes);
 // Throws what readPlanes() throws, and MeaningError for parts that are not all the passes of one picture.
 std::vector<PassPlanes> readPasses(const std::string& path);

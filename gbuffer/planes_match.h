@@ -10,14 +10,14 @@ namespace pellucid {
 // All throw MeaningError that names both files, what was found and what was expected. Cameras agree when sameView says
 // so.
 
-// Sums add when windows, camera, method, weight, normalisation, tier and solids agree.
+// Sums add when windows, places, camera, method, weight, normalisation, tier and solids agree.
 void expectSamePlanes(const OitPlanes& planes, const std::string& file, const OitPlanes& before,
                       const std::string& fileBefore);
 
 // mergePlanes (accum.h) with the names of the files in its error.
 void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, const std::string& fileB);
 
-// Planes belong over pictures of their display window, data window and, where the picture's file states one, camera. A
+// Planes belong over pictures of their display window (those of places: see OitInfo::places), data window and, where the picture's file states one, camera. A
 // camera that was given by --camera when the planes were made overrules the file's then and here.
 void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,
                     const std::string& file);

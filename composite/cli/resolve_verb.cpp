@@ -5,6 +5,7 @@
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
+#include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/resolve_planes.h"
 
 namespace pellucid::cli {
@@ -38,8 +39,8 @@ void resolveVerb(const ResolveFlags& flags) {
   Journal notes = journal();
   const ResolvedPlanes result = resolvePlanes(requestOf(flags), notes);
   say(notes.time("write", [&] {
-    return writePicture(flags.output, result.opaque, result.picture.rgba, result.picture.touched, result.layers,
-                        {{"pellucid:method", result.info.method}});
+    return writeOver(flags.output, result.opaque, &result.camera, result.picture, result.layers,
+                     {{"pellucid:method", result.info.method}});
   }));
   nlohmann::json report{{"output", flags.output}};
   reportRun(flags.run, notes.stages, {}, result.device, report);

@@ -80,9 +80,11 @@ HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool ev
       const std::size_t own = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(opaque.data.width()) +
                               static_cast<std::size_t>(left + x);
       const auto upTo = [&](float z, std::uint64_t sample) {
+        bool bent = false;
         for (std::uint64_t i = first; i < last; ++i) {
           if (lists.fragments[i].z > z) continue;
           row.fragments.push_back(lists.fragments[i]);
+          bent = bent || bends(lists.fragments[i]);
           if (lists.disperses()) row.dispersion.push_back(lists.dispersion[i]);
         }
         solids.push_back(solid.a <= z ? solid : glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
@@ -90,6 +92,7 @@ HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool ev
         held.pixel.emplace_back(lists.window.x0 + x, lists.window.y0 + y);
         held.z.push_back(z);
         held.place.push_back(sample + own);
+        held.bends.push_back(bent);
       };
       if (everywhere || first != last || std::isfinite(solid.a)) {
         for (std::uint64_t k = opaque.offsets[own]; k < opaque.offsets[own + 1]; ++k) upTo(opaque.samples[k].z, k);
@@ -118,13 +121,12 @@ glm::vec3 sumOfPlaces(const DeepOpaque& opaque, std::size_t pixel, const Image<g
   return glm::vec3(sum);
 }
 
-void addHeldOut(const FragmentLists& lists, const HeldOutRow& heldOut, const Veil& row, const DeepOpaque& opaque,
+void addHeldOut(const Window& window, const HeldOutRow& heldOut, const Veil& row, const DeepOpaque& opaque,
                 const OitPlanes* scatter, Veil& veil, Image<glm::vec3>& lookedUp) {
-  const int left = lists.window.x0 - opaque.data.x0, top = lists.window.y0 - opaque.data.y0;
-  const std::vector<Fragment>& fragments = heldOut.lists.fragments;
+  const int left = window.x0 - opaque.data.x0, top = window.y0 - opaque.data.y0;
   std::size_t pixel = 0;
-  for (int y = 0; y < lists.window.height(); ++y)
-    for (int x = 0; x < lists.window.width(); ++x, ++pixel) {
+  for (int y = 0; y < window.height(); ++y)
+    for (int x = 0; x < window.width(); ++x, ++pixel) {
       if (heldOut.first[pixel] == heldOut.first[pixel + 1]) continue;
       const int px = left + x, py = top + y;
       const std::size_t own =
@@ -138,8 +140,6 @@ void addHeldOut(const FragmentLists& lists, const HeldOutRow& heldOut, const Vei
       for (std::uint64_t k = opaque.offsets[own]; k <= opaque.offsets[own + 1]; ++k, ++entry) {
         const bool beyond = k == opaque.offsets[own + 1];
         const glm::dvec3 share = beyond ? glm::max(rest, glm::dvec3(0.0)) : glm::dvec3(opaque.samples[k].share);
-        const auto begin = fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.lists.offsets[entry]);
-        const auto end = fragments.begin() + static_cast<std::ptrdiff_t>(heldOut.lists.offsets[entry + 1]);
         const bool covered = row.touched[entry] && std::max({share.x, share.y, share.z}) > (beyond ? kCovered : 0.0);
         const glm::dvec3 passed = row.touched[entry] ? glm::dvec3(row.transmission[entry]) : glm::dvec3(1.0);
         rest -= share;
@@ -149,7 +149,7 @@ void addHeldOut(const FragmentLists& lists, const HeldOutRow& heldOut, const Vei
           touched = true;
           front = std::min(front, row.frontZ[entry]);
         }
-        if (covered && looksElsewhere && std::any_of(begin, end, bends))
+        if (covered && looksElsewhere && heldOut.bends[entry])
           elsewhere += share * passed;
         else if (beyond)
           open = shading::meanOf(glm::vec3(share * passed));

@@ -41,6 +41,7 @@ struct HeldOutRow {
   std::vector<glm::ivec2> pixel;     // per entry: where in the display window
   std::vector<float> z;              // per entry: depth of its opaque sample, planar metres, +inf beyond all
   std::vector<std::size_t> place;    // per entry: where among all entries of the picture, see placesOf()
+  std::vector<std::uint8_t> bends;   // per entry: a layer in front of its sample refracts or diffuses
 };
 // A pixel without layers or solid has no entry, unless `everywhere` says that something else is in front of it.
 HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool everywhere = false);
@@ -49,11 +50,12 @@ std::size_t placesOf(const DeepOpaque& opaque);
 
 // The veil of such a row back to pixels of `veil`: every sample's light and transmission by its share. What stands
 // behind is in `applied`, except for what the lookups are still to add.
+//   window    of the lists, in the display window
 //   veil      scatters()
 //   row       veil of heldOut.lists
 //   scatter   where layers look the background up elsewhere, or null
 //   lookedUp  transmission of the samples that layers in front of them scatter
-void addHeldOut(const FragmentLists& lists, const HeldOutRow& heldOut, const Veil& row, const DeepOpaque& opaque,
+void addHeldOut(const Window& window, const HeldOutRow& heldOut, const Veil& row, const DeepOpaque& opaque,
                 const OitPlanes* scatter, Veil& veil, Image<glm::vec3>& lookedUp);
 
 // Sums each pixel's entries by their shares: what was worked out for every place of the picture, for its pixels.

@@ -1,5 +1,7 @@
 #include "composite/pipeline/compositor.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <utility>
@@ -29,6 +31,20 @@ Image<glm::vec4> relitPicture(const Lighting& lighting) {
   relit = lighting.relit.beauty;
   for (std::size_t i = 0; i < relit.size(); ++i) relit[i].a = lighting.shadows.touched[i] ? 1.0f : 0.0f;
   return relit;
+}
+
+// What sums over a deep picture cannot hold.
+void expectPlacesHold(const Request& request) {
+  const auto refuse = [&](const char* flag, const char* expected, const char* why) {
+    throw MeaningError(
+        fmt::format("{}: {}: found it with a deep picture, expected {}: {}", request.shot.opaque, flag, expected, why));
+  };
+  if (request.foliage.rule == FoliageRule::apart)
+    refuse("--occlusion apart", "inferred", "rims have pixels beside them, samples have none");
+  if (!request.heldOutBy.empty())
+    refuse("--held-out-by", "all scenes at once", "every sample holds layers out on its own");
+  if (request.shadows.apply)
+    refuse("--apply-shadows", "composite", "planes hold no samples of the picture that could be dimmed");
 }
 
 // While it lives, the pass draws over another depth of the same picture. Without a pass there is nothing to draw.
@@ -166,15 +182,13 @@ shading::WeightSettings Compositor::fitWeight(Request request) {
 }
 
 RunCounts Compositor::accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each) {
-  if (shot_->deepOpaque)
-    throw UsageError(request.shot.opaque +
-                     ": accumulate: found deep samples, each of which would need planes of its own, expected a flat "
-                     "picture: composite takes both");
+  if (shot_->deepOpaque) expectPlacesHold(request);
   const Run run = prepare(request);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
   const OtherSolids others(request.heldOutBy, gbuffer, run.plan.passes);
   RunCounts counts;
-  const Plan sums = sumsPlanOf(run.plan, facts_);
+  Plan sums = sumsPlanOf(run.plan, facts_);
+  sums.heldOut = run.plan.heldOut;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, i, run.plan.passes);
@@ -182,14 +196,14 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
     sample.normalisation = sums.pass.normalisation;
     PassPlanes made;
     if (others.empty()) {
-      made = passPlanes(sums, sample, run, run.lighting->picture, request, counts);
+      made = passPlanes(sums, sample, i, run, run.lighting->picture, request, counts);
     } else {
       const GBuffer held = others.before(gbuffer, i);
       const DrawnOverPicture over(triangles(), held, gbuffer, shot_->camera);
-      made = passPlanes(sums, sample, run, {&held, nullptr}, request, counts);
+      made = passPlanes(sums, sample, i, run, {&held, nullptr}, request, counts);
       others.addTo(made.planes, i);
     }
-    made.planes.info.method = run.plan.method;
+    made.planes.info.method = made.scatter.info.method = run.plan.method;
     if (i == 0) made.relit = relitPicture(*run.lighting);
     shows = shows || anyLayers(made.planes);
     each(std::move(made));
@@ -199,10 +213,16 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
   return counts;
 }
 
-PassPlanes Compositor::passPlanes(const Plan& sums, const PassSettings& sample, const Run& run,
+PassPlanes Compositor::passPlanes(const Plan& sums, const PassSettings& sample, int pass, const Run& run,
                                   const LitPicture& picture, const Request& request, RunCounts& counts) {
   const PaintContext context{sums, *shot_, picture, *run.sources, device_, journal_, counts};
   PassPlanes made;
+  if (sums.heldOut) {
+    PlacedSums placed = journal_.time("lists and sums", [&] { return placedSumsOf(context, sample, pass); });
+    made.planes = std::move(placed.places);
+    made.scatter = std::move(placed.scatter);
+    return made;
+  }
   made.planes = journal_.time("transparent pass", [&] { return sumsOf(context, sample); });
   if (request.foliage.rule == FoliageRule::apart && triangles())
     made.rims = journal_.time("rims", [&] { return triangles()->rims(fullResolutionPart(sums, sample)); });
@@ -227,14 +247,8 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
 std::vector<std::string> Compositor::write(const std::string& path, const Result& result) const {
   const std::map<std::string, std::string> attributes{{"pellucid:method", result.plan.method},
                                                       {"pellucid:weight", weightText(result.plan.pass.weight)}};
-  if (!shot_->deepOpaque)
-    return writePicture(path, shot_->opaque, result.picture.rgba, result.picture.touched, result.layers, attributes);
-  const GBuffer& gbuffer = shot_->opaque.gbuffer;
-  std::vector<ExtraLayer> layers{beautyLayer(result.picture.rgba)};
-  layers.insert(layers.end(), result.layers.begin(), result.layers.end());
-  return writeLayers(path, gbuffer.display, gbuffer.data, layers, attributes,
-                     shot_->hasScene ? &shot_->camera : nullptr, false,
-                     &shot_->opaque.document.parts[static_cast<std::size_t>(shot_->opaque.choice.beautyPart)]);
+  return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,
+                   attributes);
 }
 
 }  // namespace pellucid

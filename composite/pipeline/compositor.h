@@ -37,8 +37,8 @@ class Compositor {
   shading::WeightSettings fitWeight(Request request);
   // Composites. The picture's bits do not depend on what was run before.
   Result run(const Request& request);
-  // The sums alone, pass by pass in order, as `resolve` takes them. Of a flat picture: throws UsageError for a deep
-  // one.
+  // The sums alone, pass by pass in order, as `resolve` takes them. Over a deep picture those of its places; throws
+  // MeaningError for what these cannot hold: rims apart, solids of other planes, shadows on the picture.
   //   each  takes them as they are made
   RunCounts accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each);
   // Every fragment at pixel centres, in windows that together cover the data window.
@@ -54,8 +54,8 @@ class Compositor {
   const Lighting& lightOf(const Request& request);
   TransparentPass* triangles();
   Run prepare(const Request& request);
-  PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, const Run& run, const LitPicture& picture,
-                        const Request& request, RunCounts& counts);
+  PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, int pass, const Run& run,
+                        const LitPicture& picture, const Request& request, RunCounts& counts);
   Veil paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal, RunCounts& counts);
 
   Journal journal_;

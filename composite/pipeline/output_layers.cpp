@@ -28,6 +28,16 @@ ExtraLayer beautyLayer(const Image<glm::vec4>& rgba) {
   return layer;
 }
 
+std::vector<std::string> writeOver(const std::string& path, const OpaqueFile& opaque, const Camera* camera,
+                                   const Picture& picture, const std::vector<ExtraLayer>& layers,
+                                   const std::map<std::string, std::string>& attributes) {
+  const ExrPart& part = opaque.document.parts[static_cast<std::size_t>(opaque.choice.beautyPart)];
+  if (!part.deep) return writePicture(path, opaque, picture.rgba, picture.touched, layers, attributes);
+  std::vector<ExtraLayer> all{beautyLayer(picture.rgba)};
+  all.insert(all.end(), layers.begin(), layers.end());
+  return writeLayers(path, opaque.gbuffer.display, opaque.gbuffer.data, all, attributes, camera, false, &part);
+}
+
 std::vector<ExtraLayer> veilLayers(const std::vector<LayerName>& layers, const Veil& veil) {
   const Window size{0, 0, veil.touched.width(), veil.touched.height()};
   std::vector<ExtraLayer> result;

@@ -1,8 +1,11 @@
 // Extra layers of a result, for the output file.
 #pragma once
+#include <map>
+#include <string>
 #include <vector>
 
 #include "composite/pipeline/request.h"
+#include "composite/resolve.h"
 #include "composite/veil.h"
 #include "gbuffer/accum.h"
 
@@ -13,6 +16,13 @@ ExtraLayer beautyLayer(const Image<glm::vec4>& rgba);  // R, G, B, A without a l
 std::vector<ExtraLayer> veilLayers(const std::vector<LayerName>& layers, const Veil& veil);
 // The others show planes of the transparent pass, at pixel centres.
 bool wantsPlanes(const std::vector<LayerName>& layers);
+// The opaque picture with another beauty in it and more layers: a flat one keeps what is not touched, of a deep one
+// what it flattens to is written, with its header.
+//   camera  of a deep picture, to be stated; null: the header's own
+// Returns the notes.
+std::vector<std::string> writeOver(const std::string& path, const OpaqueFile& opaque, const Camera* camera,
+                                   const Picture& picture, const std::vector<ExtraLayer>& layers,
+                                   const std::map<std::string, std::string>& attributes);
 ExtraLayer planeLayer(const std::vector<LayerName>& layers, const OitPlanes& planes);
 
 }  // namespace pellucid

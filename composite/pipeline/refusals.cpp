@@ -65,8 +65,7 @@ const std::vector<Refusal>& refusals() {
        [](const Request& r) { return r.tier == Tier::published && paintsBy<PaintWithin>(r); }},
       {"--precision", "published", "--systems", "float or exact", "its targets hold one pass over everything",
        [](const Request& r) { return r.tier == Tier::published && paintsBy<PaintSystems>(r); }},
-      {"--precision", "published", "--method {}", "float or exact",
-       "its targets hold the phenomenological sums alone",
+      {"--precision", "published", "--method {}", "float or exact", "its targets hold the phenomenological sums alone",
        [](const Request& r) {
          return r.tier == Tier::published && !paintsBy<PaintSums>(r) && !paintsBy<PaintWithin>(r) &&
                 !paintsBy<PaintSystems>(r);
@@ -91,8 +90,10 @@ const std::vector<Refusal>& refusals() {
        [](const Request& r) { return r.lookup.exact && r.lookup.kernel == shading::PLD_DIFFUSE_DISC; }},
       {"--layers", "depth, weight or count", "--precision published", "float or exact", "its targets do not hold them",
        [](const Request& r) { return r.tier == Tier::published && asksPlanesOf(r); }},
-      {"--occlusion", "apart", "--precision published", "on, or --precision float or exact",
-       "rims are summed in floats",
+      {"--occlusion", "apart", "--precision exact", "inferred, or --precision float",
+       "rims are summed in floats, whose order shows",
+       [](const Request& r) { return r.tier == Tier::exact && r.foliage.rule == FoliageRule::apart; }},
+      {"--occlusion", "apart", "--precision published", "inferred, or --precision float", "rims are summed in floats",
        [](const Request& r) { return r.tier == Tier::published && r.foliage.rule == FoliageRule::apart; }},
   };
   return table;

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 
+#include "composite/deep/placed_sums.h"
 #include "composite/occluders.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/resolve_step.h"
+#include "composite/pipeline/shot.h"
 #include "composite/rims.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/planes_io.h"
@@ -64,6 +66,15 @@ void validate(const PlanesRequest& request) {
 
 namespace {
 
+// Of a deep picture: what scatters in either.
+void addScatter(OitPlanes& sum, const OitPlanes& more, const std::string& file, const std::string& other) {
+  if (!more.scatters()) return;
+  if (sum.scatters())
+    mergePlanes(sum, more, file, other);
+  else
+    sum = more;
+}
+
 // All files' passes, added pass by pass.
 std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) {
   std::vector<PassPlanes> passes = journal.time("read planes", [&] { return readPasses(request.planes[0]); });
@@ -81,10 +92,29 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
       if (!more[0].relit.empty()) passes[0].relit = more[0].relit;
       for (std::size_t i = 0; i < passes.size(); ++i) {
         mergePlanes(passes[i].planes, more[i].planes, request.planes[0], request.planes[k]);
+        addScatter(passes[i].scatter, more[i].scatter, request.planes[0], request.planes[k]);
         passes[i].rims.add(more[i].rims);
       }
     });
   return passes;
+}
+
+// Planes of places belong to that deep picture alone.
+void checkPlaces(const PlanesRequest& request, const OitPlanes& planes, const DeepOpaque* deep) {
+  const std::string found = planes.info.places.empty() ? "pixels of a flat picture" : planes.info.places,
+                    expected = deep ? placesText(*deep) : "pixels of a flat picture";
+  if (found != expected)
+    throw MeaningError(fmt::format("{}: found planes of {}, expected {} as {} has", request.planes[0], found, expected,
+                                   request.opaque));
+  if (deep && planes.data != placesWindow(*deep))
+    throw MeaningError(fmt::format("{}: data window: found {} x {} places, expected {} rows of {} as {} has",
+                                   request.planes[0], planes.data.width(), planes.data.height(),
+                                   placesWindow(*deep).height(), placesWindow(*deep).width(), request.opaque));
+  if (deep && wantsPlanes(request.layers))
+    throw MeaningError(
+        fmt::format("{}: --layers: found diffusion, delta, weight or count with a deep picture, expected transparent "
+                    "or transmission: each sample has planes of its own",
+                    request.opaque));
 }
 
 void checkPlanes(const PlanesRequest& request, const OitPlanes& planes, const GBuffer& gbuffer) {
@@ -102,48 +132,75 @@ ResolveSettings settingsOf(const PlanesRequest& request, const OitPlanes& planes
   return settings;
 }
 
+// The device that resolves, or null for the CPU, with a note where it was asked for in vain.
+ResolvePass* resolverFor(const PlanesRequest& request, const ResolveSettings& settings, const std::string& method,
+                         bool deep, Device& device, Journal& journal) {
+  if (!request.onDevice) return nullptr;
+  if (!deep && settings.formula == SumFormula::mean) return &device.resolver(journal);
+  journal.note(
+      deep ? "--resolve gl: each sample of a deep picture has sums of its own, which the CPU resolves"
+           : fmt::format("--resolve gl: planes of method {} are resolved on the CPU: the device has the weighted mean "
+                         "alone",
+                         method));
+  return nullptr;
+}
+
+// One pass of a flat picture.
+Veil veilOfPixels(const PlanesRequest& request, PassPlanes& pass, const ResolveSettings& settings,
+                  const GBuffer& gbuffer, ResolvePass* resolver, Journal& journal) {
+  journal.time("occlusion of leaves", [&] { occludeRims(request.rims, pass.rims, gbuffer, pass.planes, journal); });
+  return journal.time("resolve",
+                      [&] { return resolveSums(resolver, std::move(pass.planes), settings, request.lookup, gbuffer); });
+}
+
+// Reads the picture that the planes belong to, and checks that they do.
+GBuffer readBackground(const PlanesRequest& request, const PassPlanes& first, ResolvedPlanes& result,
+                       std::unique_ptr<DeepOpaque>& deep, Journal& journal) {
+  const OitPlanes& planes = first.planes;
+  result.opaque =
+      journal.time("read picture", [&] { return readPictureFile(request.opaque, request.read, &planes.camera, deep); });
+  result.camera = planes.camera;
+  result.info = planes.info;
+  if (!deep) journal.note(understoodLines(result.opaque));
+  journal.note(result.opaque.notes);
+  checkPlaces(request, planes, deep.get());
+  checkPlanes(request, planes, result.opaque.gbuffer);
+  if (deep) checkRims(request.rims, false);
+  GBuffer gbuffer = result.opaque.gbuffer;
+  for (std::size_t i = 0; i < first.relit.size(); ++i)
+    gbuffer.beauty[i] = glm::vec4(glm::vec3(first.relit[i]), gbuffer.beauty[i].a);
+  return gbuffer;
+}
+
 }  // namespace
 
 ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   validate(request);
   ResolvedPlanes result;
   std::vector<PassPlanes> passes = readAll(request, journal);
-  const OitPlanes& first = passes[0].planes;
-  result.opaque = journal.time("read picture", [&] { return readOpaque(request.opaque, request.read, &first.camera); });
-  journal.note(understoodLines(result.opaque));
-  journal.note(result.opaque.notes);
-  checkPlanes(request, first, result.opaque.gbuffer);
-  result.info = first.info;
-  GBuffer gbuffer = result.opaque.gbuffer;
+  std::unique_ptr<DeepOpaque> deep;
+  const GBuffer gbuffer = readBackground(request, passes[0], result, deep, journal);
   const Image<glm::vec4> relit = passes[0].relit;
-  for (std::size_t i = 0; i < relit.size(); ++i)
-    gbuffer.beauty[i] = glm::vec4(glm::vec3(relit[i]), gbuffer.beauty[i].a);
   if (std::none_of(passes.begin(), passes.end(), [](const PassPlanes& pass) { return anyLayers(pass.planes); }))
     journal.note(fmt::format("{}: the planes hold no layer: nothing changes", fmt::join(request.planes, ", ")));
-  const ResolveSettings settings = settingsOf(request, first);
+  const ResolveSettings settings = settingsOf(request, passes[0].planes);
   Device device(-1);
-  const bool onDevice = request.onDevice && settings.formula == SumFormula::mean;
-  if (request.onDevice && !onDevice)
-    journal.note(
-        fmt::format("--resolve gl: planes of method {} are resolved on the CPU: the device has the weighted "
-                    "mean alone",
-                    first.info.method));
-  ResolvePass* resolver = onDevice ? &device.resolver(journal) : nullptr;
+  ResolvePass* resolver = resolverFor(request, settings, result.info.method, deep != nullptr, device, journal);
+  std::vector<ExtraLayer> ofPlanes;
+  if (wantsPlanes(request.layers)) ofPlanes.push_back(planeLayer(request.layers, passes[0].planes));
   VeilMean mean;
-  for (PassPlanes& pass : passes) {
-    journal.time("occlusion of leaves", [&] { occludeRims(request.rims, pass.rims, gbuffer, pass.planes, journal); });
-    if (&pass == &passes[0] && wantsPlanes(request.layers))
-      result.layers.push_back(planeLayer(request.layers, pass.planes));
-    mean.add(journal.time(
-        "resolve", [&] { return resolveSums(resolver, std::move(pass.planes), settings, request.lookup, gbuffer); }));
-  }
+  for (PassPlanes& pass : passes)
+    mean.add(
+        deep ? journal.time(
+                   "resolve",
+                   [&] { return resolvePlaces(pass.planes, pass.scatter, settings, request.lookup, *deep, gbuffer); })
+             : veilOfPixels(request, pass, settings, gbuffer, resolver, journal));
   result.veil = journal.time("average", [&] { return mean.finish(); });
   result.picture = journal.time("compose", [&] { return compose(result.veil, gbuffer); });
   for (std::size_t i = 0; i < relit.size(); ++i)
     if (relit[i].a > 0.0f) result.picture.touched[i] = 1;
-  std::vector<ExtraLayer> layers = veilLayers(request.layers, result.veil);
-  layers.insert(layers.end(), result.layers.begin(), result.layers.end());
-  result.layers = std::move(layers);
+  result.layers = veilLayers(request.layers, result.veil);
+  result.layers.insert(result.layers.end(), ofPlanes.begin(), ofPlanes.end());
   result.device = device.description();
   return result;
 }

@@ -32,7 +32,8 @@ struct PlanesRequest {
 
 struct ResolvedPlanes {
   OpaqueFile opaque;
-  OitInfo info;  // of the planes
+  Camera camera;  // of the planes
+  OitInfo info;   // of the planes
   Veil veil;
   Picture picture;
   std::vector<ExtraLayer> layers;

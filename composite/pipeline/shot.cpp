@@ -47,8 +47,9 @@ DepthConverter deepDepth(const ReadOptions& options, const Camera* camera, const
           display, path + ": deep samples"};
 }
 
-// A picture all of whose parts are deep becomes shot.deepOpaque, and what it flattens to.
-OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const Camera* camera, Shot& shot) {
+// A picture all of whose parts are deep becomes its samples, and what it flattens to.
+OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const Camera* camera,
+                         std::unique_ptr<DeepOpaque>& deep) {
   if (!options.depthChannel.empty() || !options.beautyLayer.empty())
     throw UsageError(
         fmt::format("{}: --beauty and --depth are for flat pictures: found deep samples, which have one "
@@ -69,8 +70,8 @@ OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const
   if (!camera && file.gbuffer.camera) camera = &*file.gbuffer.camera;
   const DepthConverter depth = deepDepth(options, camera, part.display, file.document.path);
   file.choice.depthKind = depthKindText(depth.kind());
-  shot.deepOpaque = std::make_unique<DeepOpaque>(readDeepOpaque(file.document.path, channels, depth));
-  const DeepOpaque& samples = *shot.deepOpaque;
+  deep = std::make_unique<DeepOpaque>(readDeepOpaque(file.document.path, channels, depth));
+  const DeepOpaque& samples = *deep;
   file.gbuffer.beauty = samples.flat;
   file.gbuffer.hasAlpha = true;
   file.gbuffer.viewZ = samples.farthest;
@@ -84,8 +85,9 @@ OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const
   return file;
 }
 
-OpaqueFile interpretPicture(ExrDocument document, const ReadOptions& options, const Camera* camera, Shot& shot) {
-  return isDeep(document) ? interpretDeep(std::move(document), options, camera, shot)
+OpaqueFile interpretPicture(ExrDocument document, const ReadOptions& options, const Camera* camera,
+                            std::unique_ptr<DeepOpaque>& deep) {
+  return isDeep(document) ? interpretDeep(std::move(document), options, camera, deep)
                           : interpretOpaque(std::move(document), options, camera);
 }
 
@@ -93,13 +95,13 @@ OpaqueFile interpretPicture(ExrDocument document, const ReadOptions& options, co
 void readPicture(const ShotRequest& request, Shot& shot) {
   ReadOptions framing = request.read;
   framing.framingAlone = true;
-  OpaqueFile first = interpretPicture(readExr(request.opaque), framing, nullptr, shot);
+  OpaqueFile first = interpretPicture(readExr(request.opaque), framing, nullptr, shot.deepOpaque);
   // Deep samples lie in the picture's own pixels: they need no camera, but fog does.
   shot.hasCamera = shot.hasScene || first.gbuffer.camera || !std::holds_alternative<std::monostate>(request.camera);
   if (shot.hasCamera)
     shot.camera = chooseCamera(request.camera, first.gbuffer, shot.scene, request.opaque, first.cameraRefusal);
-  shot.opaque =
-      interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr, shot);
+  shot.opaque = interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr,
+                                 shot.deepOpaque);
 }
 
 void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal) {
@@ -130,6 +132,11 @@ void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal
 }
 
 }  // namespace
+
+OpaqueFile readPictureFile(const std::string& path, const ReadOptions& options, const Camera* camera,
+                           std::unique_ptr<DeepOpaque>& deep) {
+  return interpretPicture(readExr(path), options, camera, deep);
+}
 
 bool isExrName(const std::string& path) {
   std::string end = path.substr(path.size() - std::min<std::size_t>(path.size(), 4));

@@ -31,6 +31,12 @@ struct Shot {
 //   traced  rays will meet the scene's triangles: they are decoded, whatever SceneOptions::streamBytes says
 std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal& journal);
 
+// The opaque picture of a file, flat or deep.
+//   camera  where depth needs one, or null: the file's own
+//   deep    is given the samples of a deep one
+OpaqueFile readPictureFile(const std::string& path, const ReadOptions& options, const Camera* camera,
+                           std::unique_ptr<DeepOpaque>& deep);
+
 bool isExrName(const std::string& path);  // a deep file rather than glTF
 
 // The camera of a shot, by choice, file attribute or glTF, in this order.

@@ -10,6 +10,13 @@ namespace pellucid {
 // in them. Of a flat picture.
 OitPlanes sumsOf(const PaintContext& context, const PassSettings& sample);
 
+// The same over a deep picture, each of whose samples has sums of its own.
+struct PlacedSums {
+  OitPlanes places;   // of placesWindow()
+  OitPlanes scatter;  // what looks the background up elsewhere, of the picture; empty where nothing does
+};
+PlacedSums placedSumsOf(const PaintContext& context, const PassSettings& sample, int pass);
+
 // What the lists of a window add to planes of the plan's tier.
 void foldInto(const Plan& plan, const FragmentLists& lists, const PassSettings& sample, OitPlanes& planes,
               PublishedClamps& clamps);

@@ -1,17 +1,15 @@
 // The smallest deferred engine that has transparency: G-buffer, light pass, Pellucid's pass, resolve. Of Pellucid it
 // knows the public header alone. Headless by EGL, or in a window.
 //
-//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD] [window[:FRAMES]]    METHOD: phenomenological, weighted or
-//   front+tail
+//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD] [window[:FRAMES]]  METHOD: phenomenological, weighted, front+tail
 //
 // Draws the glTF's transparent primitives over a room of its own, and writes OUTDIR/opaque.exr (colour and Z, what
 // `pellucid composite` takes) and OUTDIR/frame.exr. `window` walks around them until it is closed; with FRAMES it
 // stands still for so many, and OUTDIR/window.exr is what the window shows of the last.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
-// After them: it brings a GL of its own.
-#include <GLFW/glfw3.h>
 
+#include <GLFW/glfw3.h>  // after epoxy: it brings a GL of its own
 #include <OpenImageIO/imageio.h>
 #include <pellucid/pellucid.h>
 
@@ -47,8 +45,6 @@ constexpr glm::vec3 kAmbient{0.35f, 0.38f, 0.42f};
 void check(pld_status status, pld_pass* pass) {
   if (status != PLD_OK) stop(std::string(pld_status_name(status)) + ": " + pld_message(pass));
 }
-
-// ---------------------------------------------------------------------------------------------------------- the scene
 
 struct Vertex {
   glm::vec3 position, normal;
@@ -133,8 +129,6 @@ void addRoom(Scene& scene) {
   block(0.15f, -0.75f, 0.02f, 0.2f * size.y, {0.75f, 0.1f, 0.1f});  // stands in front
 }
 
-// ----------------------------------------------------------------------------------------------------------- the glTF
-
 struct Gltf {
   json root;
   std::vector<char> bytes;
@@ -192,11 +186,12 @@ Material materialOf(const json& source) {
   material.base = glm::vec4(base[0], base[1], base[2], base[3]);
   material.roughness = pbr.value("roughnessFactor", 1.0f);
   material.blend = source.value("alphaMode", "OPAQUE") == "BLEND";
-  material.bothSides = source.value("doubleSided", false);
   material.unlit = more.contains("KHR_materials_unlit");
   material.transmission = more.value("KHR_materials_transmission", none).value("transmissionFactor", 0.0f);
   material.ior = more.value("KHR_materials_ior", none).value("ior", 1.5f);
   material.thickness = more.value("KHR_materials_volume", none).value("thicknessFactor", 0.0f);
+  // Light meets a volume's boundary twice, whatever doubleSided says.
+  material.bothSides = material.thickness > 0.0f || source.value("doubleSided", false);
   return material;
 }
 
@@ -208,18 +203,15 @@ void addNode(Scene& scene, const Gltf& gltf, std::size_t index, const glm::mat4&
     scene.yfov = gltf.root.at("cameras").at(node["camera"].get<std::size_t>()).at("perspective").at("yfov");
   }
   if (node.contains("extensions") && node["extensions"].contains("KHR_lights_punctual")) {
-    const json& light = gltf.root.at("extensions")
-                            .at("KHR_lights_punctual")
-                            .at("lights")
-                            .at(node["extensions"]["KHR_lights_punctual"].at("light").get<std::size_t>());
+    const json& lights = gltf.root.at("extensions").at("KHR_lights_punctual").at("lights");
+    const json& light = lights.at(node["extensions"]["KHR_lights_punctual"].at("light").get<std::size_t>());
     const auto colour = light.value("color", std::vector<float>{1, 1, 1});
     scene.toSun = glm::normalize(glm::vec3(world[2]));
     scene.sun = glm::vec3(colour[0], colour[1], colour[2]) * (light.value("intensity", 1.0f) / 683.0f);  // lux
   }
   if (node.contains("mesh"))
     for (const json& primitive : gltf.root.at("meshes").at(node["mesh"].get<std::size_t>()).at("primitives")) {
-      const json& accessors = gltf.root.at("accessors");
-      const json& attributes = primitive.at("attributes");
+      const json &accessors = gltf.root.at("accessors"), &attributes = primitive.at("attributes");
       const auto positions = gltf.vectors(accessors.at(attributes.at("POSITION").get<std::size_t>()));
       const auto normals = gltf.vectors(accessors.at(attributes.at("NORMAL").get<std::size_t>()));
       std::vector<Vertex> vertices;
@@ -237,8 +229,6 @@ void addNode(Scene& scene, const Gltf& gltf, std::size_t index, const glm::mat4&
     }
   for (const json& child : node.value("children", json::array())) addNode(scene, gltf, child.get<std::size_t>(), world);
 }
-
-// --------------------------------------------------------------------------------------------------------- the shaders
 
 const char* const kVersion = "#version 450 core\n";
 
@@ -260,15 +250,11 @@ in vec3 viewPosition, viewNormal;
 uniform vec4 base;
 layout(location = 0) out vec4 albedo;
 layout(location = 1) out vec4 normal;
-void main() {
-  albedo = base;
-  normal = vec4(normalize(viewNormal), 0.0);
-}
+void main() { albedo = base, normal = vec4(normalize(viewNormal), 0.0); }
 )";
 
-const char* const kFullscreen = R"(
-void main() { gl_Position = vec4(vec2((gl_VertexID & 1) << 2, (gl_VertexID & 2) << 1) - vec2(1.0), 0.5, 1.0); }
-)";
+const char* const kFullscreen =
+    "void main() { gl_Position = vec4(vec2((gl_VertexID & 1) << 2, (gl_VertexID & 2) << 1) - vec2(1.0), 0.5, 1.0); }";
 
 const char* const kLight = R"(
 layout(binding = 0) uniform sampler2D albedo;
@@ -287,8 +273,7 @@ void main() {
 // glTF: what a dielectric reflects and lets through; then one call.
 const char* const kGlass = R"(
 in vec3 viewPosition, viewNormal;
-uniform vec4 base;
-uniform vec4 surfaceValues;  // roughness, transmission, ior, thickness in metres
+uniform vec4 base, surfaceValues;  // roughness, transmission, ior, thickness in metres
 uniform ivec2 kinds;         // unlit, volume
 uniform vec3 toSun, sun, ambient;
 
@@ -354,8 +339,6 @@ GLuint program(const std::string& vertex, const std::string& fragment) {
   if (!done) stop("a program does not link");
   return name;
 }
-
-// ---------------------------------------------------------------------------------------------------------- the engine
 
 class Engine {
  public:
@@ -465,10 +448,9 @@ class Engine {
   // A texture or, 0, what the window shows, with Z; rows top to bottom.
   void write(const std::string& path, GLuint source) const {
     std::vector<float> rows, depth = read(depth_, GL_DEPTH_COMPONENT, 1), colour = read(source, GL_RGBA, 4);
-    for (int y = height_ - 1; y >= 0; --y)
-      for (int x = 0; x < width_; ++x) {
-        const std::size_t i =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    const auto width = static_cast<std::size_t>(width_);
+    for (auto y = static_cast<std::size_t>(height_); y-- > 0;)
+      for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
         for (std::size_t c = 0; c < 4; ++c) rows.push_back(colour[4 * i + c]);
         rows.push_back(depth[i] > 0.0f ? kNear / depth[i] : std::numeric_limits<float>::infinity());
       }

@@ -1,26 +1,16 @@
 // From a clean install prefix: what the library shows, and that others can build against it.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <set>
 
 #include "engine_bridge/include/pellucid/pellucid.h"
 #include "tests/support/program.h"
+#include "tests/support/shell.h"
 
 namespace pellucid::test {
 namespace {
-
-// What a shell says, and its exit code.
-Ended shell(const std::string& command, const std::string& folder) {
-  Ended ended;
-  const std::string log = folder + "/log.txt";
-  const int status = std::system(("(" + command + ") > '" + log + "' 2>&1").c_str());
-  ended.code = status == -1 ? -1 : WEXITSTATUS(status);
-  ended.out = slurp(log);
-  return ended;
-}
 
 std::string installed() {
   const std::string folder =
@@ -28,14 +18,6 @@ std::string installed() {
   const Ended ended = shell("cmake --install '" PELLUCID_BINARY_DIR "' --prefix '" + folder + "/prefix'", folder);
   EXPECT_EQ(ended.code, 0) << ended.out;
   return folder;
-}
-
-bool sanitized() {
-#if defined(__SANITIZE_ADDRESS__)
-  return true;
-#else
-  return false;
-#endif
 }
 
 TEST(BridgeInstall, TheLibraryShowsItsInterfaceAndNothingElse) {

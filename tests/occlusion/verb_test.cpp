@@ -170,7 +170,9 @@ TEST(OcclusionVerb, WhatIsMissingIsNamed) {
   ASSERT_EQ(files.run().code, 0);
   const std::string whole = slurp(files.out);
   EXPECT_EQ(runProgram({"occlusion", files.opaque, files.folder + "/none.exr", "-o", files.out}).code, 3);
-  EXPECT_EQ(runProgram({"occlusion", files.opaque, files.out, "-o", files.out}).code, 4) << "applied twice";
+  EXPECT_EQ(runProgram({"occlusion", files.opaque, files.out, "-o", files.out}).code, 2) << "onto its input";
+  EXPECT_EQ(runProgram({"occlusion", files.opaque, files.out, "-o", files.folder + "/twice.exr"}).code, 4)
+      << "applied twice";
   EXPECT_EQ(files.run({"--source", "rays"}).code, 2);
   EXPECT_EQ(files.run({"--radius", "-1"}).code, 2);
   EXPECT_EQ(slurp(files.out), whole);

@@ -68,6 +68,26 @@ TEST_F(Equivalence, ADeepPictureOfOneSampleIsTheFlatOne) {
       }
 }
 
+// Systems of one layer each, coarsely sorted, are the sorted truth: over a deep picture sample by sample.
+TEST_F(Equivalence, SystemsOverADeepPictureAreHeldOutBySamples) {
+  std::vector<std::string> cards;
+  for (const float z : {-3.0f, -4.5f, -9.0f, -30.0f}) {
+    cards.push_back(folder + "/card" + std::to_string(cards.size()) + ".glb");
+    writeGlb(cards.back(), {Quad{{-40, -40, z}, {80, 0, 0}, {0, 80, 0}, unlit(0.9f, 0.2f, -0.02f * z, 0.4f)}});
+  }
+  for (const bool fog : {false, true})
+    for (const std::string& opaque : {files.flat, files.deepWall, files.deepPicture}) {
+      Request sorted = requestOf(opaque, cards[0]);
+      sorted.shot.inputs = cards;
+      sorted.paint = PaintSorted{};
+      if (fog) askFog(sorted);
+      Request systems = sorted;
+      systems.paint = PaintSystems{SystemRule::file, std::nullopt};
+      SCOPED_TRACE(opaque + (fog ? ", fog" : ""));
+      EXPECT_LE(largestDifference(pictureOf(sorted), pictureOf(systems)), 4e-6);
+    }
+}
+
 TEST_F(Equivalence, FogOverADeepPictureIsHeldOutBySamples) {
   // Without glass: half of each left pixel sees the post at 5 m through that much fog, the other half the wall at 20.
   writeGlb(folder + "/far.glb", {Quad{{-1, -1, -90}, {2, 0, 0}, {0, 2, 0}, unlit(1, 1, 1, 0.5f)}});

@@ -6,6 +6,7 @@
 
 #include "composite/pipeline/compositor.h"
 #include "composite/pipeline/resolve_planes.h"
+#include "gbuffer/errors.h"
 #include "tests/pipeline/shot_files.h"
 #include "tests/support/program.h"
 #include "tests/support/shots.h"
@@ -99,6 +100,42 @@ TEST_F(TwoSteps, GiveTheBitsOfComposite) {
       }
       EXPECT_EQ(differing(inTwoSteps(request), atOnce(request)), 0u);
     }
+}
+
+// Planes of a deep picture are those of its places: each sample, and what shows beyond, has sums of its own.
+TEST_F(TwoSteps, OverADeepPictureGiveTheBitsOfComposite) {
+  for (const Way& first : kWays)
+    for (const Way& second : kWays) {
+      const auto shadows = [](const Way& way) { return std::string(way.name).find("shadows") != std::string::npos; };
+      if (&first != &second && shadows(first) && shadows(second)) continue;
+      Request request = requestOf(files.deepPicture, files.scene);
+      SCOPED_TRACE(std::string(first.name) + ", " + second.name);
+      for (const Way* way : {&first, &second}) {
+        if (std::string(way->name) == "deep layers")
+          request.shot.inputs = {files.scene, files.deepLayers};
+        else
+          way->ask(request);
+      }
+      EXPECT_EQ(differing(inTwoSteps(request), atOnce(request)), 0u);
+    }
+}
+
+TEST_F(TwoSteps, PlanesOfPlacesBelongToTheirPicture) {
+  const Request request = requestOf(files.deepPicture, files.scene);
+  const std::string planes = folder + "/places.exr";
+  accumulate(request, planes);
+  for (const std::string& other : {files.flat, files.deepWall}) {
+    Request elsewhere = request;
+    elsewhere.shot.opaque = other;
+    EXPECT_THROW(inTwoSteps(elsewhere, {planes}), MeaningError) << other;
+  }
+  EXPECT_EQ(differing(inTwoSteps(request, {planes}), atOnce(request)), 0u);
+  Request apart = request, before = request, applied = request;
+  apart.foliage.rule = FoliageRule::apart;
+  before.heldOutBy = {planes};
+  applied.shadows.source = ShadowSource::rays;
+  applied.shadows.apply = true;
+  for (const Request& each : {apart, before, applied}) EXPECT_THROW(accumulate(each, folder + "/x.exr"), MeaningError);
 }
 
 TEST_F(TwoSteps, OtherMethodsThatAreSumsAreThoseOfComposite) {

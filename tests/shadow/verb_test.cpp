@@ -187,9 +187,9 @@ TEST_F(Shadow, MistakesAreOneSentence) {
   expect({"--apply-shadows"}, 2, "--apply-shadows: found it without --shadows");
   expect({"--shadows", "exact", "--light", "key"}, 2, "expected GLTFNAME=LAYER");
   expect({"--shadows", "soft"}, 2, "soft");
-  expect({"--shadows", "exact", "--shadow-size", "1024"}, 2, "draws no maps");
+  expect({"--shadows", "exact", "--shadow-size", "1024"}, 2, "alone draws maps");
   expect({"--shadows", "stochastic", "--shadow-size", "1000"}, 2, "multiple of 128");
-  expect({"--shadows", "exact", "--shadow-views", "views.exr"}, 2, "draws no maps");
+  expect({"--shadows", "exact", "--shadow-views", "views.exr"}, 2, "alone draws maps");
   expect({"--shadows", "exact", "--seed", "1"}, 2, "draws no random numbers");
   expect({"--shadows", "exact", "--apply-shadows"}, 2, "found layers of single lights");
   expect({"--shadows", "exact", "--light", "lamp=light.key"}, 4, "no light 'lamp'");

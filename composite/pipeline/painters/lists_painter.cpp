@@ -59,6 +59,7 @@ class ListsPainter : public Painter {
       statistics.passes += lowStatistics.passes;
       context_.counts.add(statistics);
     }
+    mixer_->endPass(planes_);
     if (planes_.scatters()) showBackground(veil);
     return veil;
   }
@@ -111,7 +112,7 @@ class ListsPainter : public Painter {
     if (entries.width() == 0) return;
     Veil row(entries.width(), 1);
     mixer_->mix({sample, pass, entries, nullptr, nullptr, &heldOut}, heldOut.lists, row);
-    addHeldOut(lists, heldOut, row, *context_.picture.deepOpaque, mixed.scatter, veil, lookedUp_);
+    addHeldOut(lists.window, heldOut, row, *context_.picture.deepOpaque, mixed.scatter, veil, lookedUp_);
   }
 
   void showBackground(Veil& veil) {

@@ -20,6 +20,9 @@ class Mixer {
   virtual ~Mixer() = default;
   // Writes the veil of the lists' window, which lies inside `mixed.data`.
   virtual void mix(const Mixed& mixed, const FragmentLists& lists, Veil& veil) = 0;
+  // Once all windows of a pass are mixed.
+  //   scatter  what looks the background up elsewhere; without planes of scattering where nothing does
+  virtual void endPass(const OitPlanes& scatter) { (void)scatter; }
   virtual void finish(Veil& mean) { (void)mean; }
   virtual VolumeRule rule() const { return VolumeRule::midDepth; }
   virtual bool exactScatter() const { return false; }  // what scatters is summed so that no order shows

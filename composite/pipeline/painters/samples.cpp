@@ -1,4 +1,6 @@
 // Stochastic transparency from fragment lists.
+#include <fmt/format.h>
+
 #include "composite/pipeline/painters/lists_painter.h"
 
 namespace pellucid {
@@ -7,7 +9,9 @@ namespace {
 class SamplesMixer : public Mixer {
  public:
   SamplesMixer(const PaintContext& context, const StochasticSettings& settings)
-      : mean_(context.plan.heldOut
+      : settings_(settings),
+        journal_(context.journal),
+        mean_(context.plan.heldOut
                   ? std::make_unique<StochasticMean>(*context.picture.deepOpaque, settings, context.plan.passes)
                   : std::make_unique<StochasticMean>(context.picture.gbuffer->data.width(),
                                                      context.picture.gbuffer->data.height(), settings,
@@ -18,9 +22,17 @@ class SamplesMixer : public Mixer {
     else
       mean_->add(mixed.pass, lists, mixed.data, veil);
   }
-  void finish(Veil& mean) override { mean_->finish(mean); }
+  void finish(Veil& mean) override {
+    mean_->finish(mean);
+    if (settings_.adaptive <= 0.0 || mean_->pixelsSampled() == 0) return;
+    journal_.note(fmt::format(
+        "samples: {:.1f} a pixel on the average of those that hold a layer",
+        static_cast<double>(mean_->samplesTaken()) * settings_.samples / static_cast<double>(mean_->pixelsSampled())));
+  }
 
  private:
+  StochasticSettings settings_;
+  Journal& journal_;
   std::unique_ptr<StochasticMean> mean_;  // of all passes: masks are stratified across them
 };
 

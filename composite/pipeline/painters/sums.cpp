@@ -1,10 +1,12 @@
 // The order-independent sums of each pass, resolved. Over a deep picture each of its samples has sums of its own.
 #include <algorithm>
 
+#include "composite/deep/placed_sums.h"
 #include "composite/fog.h"
 #include "composite/pipeline/painters/lists_painter.h"
 #include "composite/pipeline/resolve_step.h"
 #include "composite/pipeline/sums.h"
+#include "engine_bridge/gl/solid_hash.h"
 
 namespace pellucid {
 namespace {
@@ -32,8 +34,16 @@ class SumsPainter : public Painter {
 // The sums of the entries of a deep picture's row.
 class SumsMixer : public Mixer {
  public:
-  explicit SumsMixer(const PaintContext& context) : context_(context) {}
+  //   kept  is given the sums, or null
+  explicit SumsMixer(const PaintContext& context, PlacedSums* kept = nullptr) : context_(context), kept_(kept) {
+    if (!kept) return;
+    const Window places = placesWindow(*context.picture.deepOpaque);
+    kept->places = emptySums(context.plan, context.plan.pass, context.picture.deepOpaque->display, places);
+  }
   bool fogBeside() const override { return true; }
+  void endPass(const OitPlanes& scatter) override {
+    if (kept_) kept_->scatter = scatter;
+  }
 
   void mix(const Mixed& mixed, const FragmentLists& lists, Veil& veil) override {
     const Plan& plan = context_.plan;
@@ -42,11 +52,13 @@ class SumsMixer : public Mixer {
     if (mixed.sample.fog && mixed.row)
       addFog(*mixed.sample.fog, *context_.picture.gbuffer, mixed.sample.sample, *mixed.row, planes,
              &context_.counts.clamps);
+    if (kept_ && mixed.row) putAtPlaces(*mixed.row, planes, kept_->places);
     veil = resolve(planes, plan.resolve);
   }
 
  private:
   PaintContext context_;
+  PlacedSums* kept_;
 };
 
 }  // namespace
@@ -54,6 +66,20 @@ class SumsMixer : public Mixer {
 std::unique_ptr<Painter> sumsPainter(const PaintContext& context) {
   if (context.plan.heldOut) return listsPainter(context, std::make_unique<SumsMixer>(context));
   return std::make_unique<SumsPainter>(context);
+}
+
+PlacedSums placedSumsOf(const PaintContext& context, const PassSettings& sample, int pass) {
+  PlacedSums sums;
+  listsPainter(context, std::make_unique<SumsMixer>(context, &sums))->paint(sample, pass);
+  // What scatters is folded in floats, of every tier.
+  for (OitPlanes* planes : {&sums.places, &sums.scatter}) {
+    if (planes == &sums.scatter && !planes->scatters()) continue;
+    planes->camera = context.shot.camera;
+    planes->info.weight = sample.weight;
+    planes->info.places = placesText(*context.picture.deepOpaque);
+    planes->info.solidHash = gl::solidHash(planes->solid);
+  }
+  return sums;
 }
 
 }  // namespace pellucid

@@ -10,6 +10,7 @@
 #include "composite/over.h"
 #include "composite/pipeline/low_layers.h"
 #include "composite/pipeline/painters/lists_painter.h"
+#include "composite/pipeline/painters/system_canvas.h"
 #include "composite/pipeline/sums.h"
 #include "composite/pipeline/systems.h"
 
@@ -94,21 +95,19 @@ class SystemsPainter : public Painter {
     PassSettings bare = sample;
     bare.fog = nullptr;  // it neither bends nor hides all
     const OitPlanes planes = sumsOf(whole, bare);
-    const int width = gbuffer.data.width(), height = gbuffer.data.height();
-    Veil veil(width, height);
-    if (sample.fog) fog_ = withFog(*sample.fog, gbuffer, sample.sample, marksOf(systems_, planes, gbuffer.data));
-    addFogRun(sample, kNothing, systems_.empty() ? 0.0 : systems_[0].z, veil);
+    const DeepOpaque* deep = context_.picture.deepOpaque;
+    SystemCanvas canvas(gbuffer, deep);
+    Veil veil = canvas.empty();
+    if (sample.fog) fog_ = withFog(*sample.fog, gbuffer, sample.sample, marksOf(systems_, planes, gbuffer.data), deep);
+    addFogRun(sample, kNothing, systems_.empty() ? 0.0 : systems_[0].z, canvas, veil);
     for (std::size_t k = 0; k < systems_.size(); ++k) {
-      Veil own(width, height);
-      mixSystem(systems_[k], bare, pass, planes, own, counts);
+      Veil own = canvas.empty();
+      mixSystem(systems_[k], bare, pass, planes, canvas, own, counts);
       putOver(own, veil);
-      addFogRun(sample, systems_[k].z, k + 1 < systems_.size() ? systems_[k + 1].z : 0.0, veil);
+      addFogRun(sample, systems_[k].z, k + 1 < systems_.size() ? systems_[k + 1].z : 0.0, canvas, veil);
     }
-    addSolids(planes, veil);
-    if (planes.scatters()) {
-      const Backdrop backdrop = backdropOf(gbuffer, planes.solid);
-      showThrough(Lookups(backdrop, planes, context_.plan.lookup), veil);
-    }
+    canvas.addSolids(planes, veil);
+    veil = canvas.finish(planes, context_.plan.lookup, std::move(veil));
     const int passes = counts.passes;
     PassStatistics statistics;
     if (context_.sources.triangles()) statistics = context_.sources.triangles()->statistics();
@@ -117,8 +116,8 @@ class SystemsPainter : public Painter {
     return veil;
   }
 
-  void mixSystem(const LayerSystem& system, const PassSettings& sample, int pass, const OitPlanes& whole, Veil& own,
-                 RunCounts& counts) {
+  void mixSystem(const LayerSystem& system, const PassSettings& sample, int pass, const OitPlanes& whole,
+                 SystemCanvas& canvas, Veil& own, RunCounts& counts) {
     LayerSources sources(system.pass.get());
     if (system.deep) sources.join(deepFiles({system.deep, 1}));
     const PaintContext part{context_.plan,    context_.shot, context_.picture, sources, context_.device,
@@ -135,13 +134,18 @@ class SystemsPainter : public Painter {
     sources.each({listed, context_.picture, VolumeRule::midDepth}, [&](const FragmentLists& lists) {
       FragmentLists shown = inFrontOfSolids(low ? low->among(lists) : lists, whole);
       if (context_.plan.isExact()) orderByDepthAndBits(shown);
-      compositeBy(method_, choice, shown, context_.picture.gbuffer->data, own);
+      canvas.mix(
+          shown,
+          [&](const FragmentLists& layers, const Window& window, Veil& veil) {
+            compositeBy(method_, choice, layers, window, veil);
+          },
+          own);
     });
     if (system.pass) counts.passes += system.pass->statistics().passes;
   }
 
   // The fog between two depths, over what is there.
-  void addFogRun(const PassSettings& sample, double farther, double nearer, Veil& veil) const {
+  void addFogRun(const PassSettings& sample, double farther, double nearer, SystemCanvas& canvas, Veil& veil) const {
     if (!sample.fog) return;
     FragmentLists between;
     between.window = fog_.window;
@@ -155,22 +159,12 @@ class SystemsPainter : public Painter {
       }
       between.offsets.push_back(between.fragments.size());
     }
-    Veil own(veil.touched.width(), veil.touched.height());
-    compositeSorted(between, context_.picture.gbuffer->data, own);
+    Veil own = canvas.empty();
+    canvas.mix(
+        between,
+        [](const FragmentLists& runs, const Window& window, Veil& mixed) { compositeSorted(runs, window, mixed); },
+        own);
     putOver(own, veil);
-  }
-
-  void addSolids(const OitPlanes& planes, Veil& veil) const {
-    for (int y = 0; y < veil.touched.height(); ++y)
-      for (int x = 0; x < veil.touched.width(); ++x) {
-        const glm::vec4 solid = planes.solid.at(x, y);
-        if (!std::isfinite(solid.a)) continue;
-        veil.touched.at(x, y) = 1;
-        veil.frontZ.at(x, y) = std::min(veil.frontZ.at(x, y), solid.a);
-        if (scattersAt(planes, x, y)) continue;  // looked up below
-        veil.light.at(x, y) += veil.transmission.at(x, y) * glm::vec3(solid);
-        veil.transmission.at(x, y) = glm::vec3(0.0f);
-      }
   }
 
   // Texels of a system that is drawn at low resolution, by the method of its layers.
