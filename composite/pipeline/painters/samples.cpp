@@ -10,6 +10,7 @@ class SamplesMixer : public Mixer {
  public:
   SamplesMixer(const PaintContext& context, const StochasticSettings& settings)
       : settings_(settings),
+        passes_(context.plan.passes),
         journal_(context.journal),
         mean_(context.plan.heldOut
                   ? std::make_unique<StochasticMean>(*context.picture.deepOpaque, settings, context.plan.passes)
@@ -27,11 +28,12 @@ class SamplesMixer : public Mixer {
     if (settings_.adaptive <= 0.0 || mean_->pixelsSampled() == 0) return;
     journal_.note(fmt::format(
         "samples: {:.1f} a pixel on the average of those that hold a layer",
-        static_cast<double>(mean_->samplesTaken()) * settings_.samples / static_cast<double>(mean_->pixelsSampled())));
+        static_cast<double>(mean_->samplesTaken()) * passes_ / static_cast<double>(mean_->pixelsSampled())));
   }
 
  private:
   StochasticSettings settings_;
+  int passes_;
   Journal& journal_;
   std::unique_ptr<StochasticMean> mean_;  // of all passes: masks are stratified across them
 };
