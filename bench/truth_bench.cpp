@@ -56,7 +56,8 @@ void BM_Weighted(benchmark::State& state) {
   for (auto _ : state)
     for (int band = 0; band < kBands; ++band) {
       OitPlanes planes = emptyPlanes(kBand, kBand);
-      foldFragments(lists, {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f}, shading::PLD_NORMALISE_SPECTRAL, planes);
+      foldFragments(lists, {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f, 1.0f}, shading::PLD_NORMALISE_SPECTRAL,
+                    planes);
       benchmark::DoNotOptimize(resolve(planes, {}));
     }
 }
@@ -69,7 +70,7 @@ void curve(benchmark::State& state, const std::string& name) {
   const FragmentLists lists = listsOf(kSmall, static_cast<std::uint64_t>(state.range(0)));
   Veil veil(kSmall.width(), kSmall.height());
   const std::optional<ChosenMethod> method = chooseMethod(name);
-  const MethodChoice choice{0, {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f}, shading::PLD_NORMALISE_SPECTRAL};
+  const MethodChoice choice{0, {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f, 1.0f}, shading::PLD_NORMALISE_SPECTRAL};
   for (auto _ : state)
     if (method)
       compositeBy(*method, choice, lists, kSmall, veil);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "composite/denormals.h"
@@ -133,13 +134,10 @@ void marchRuns(const Marcher& marcher, const shading::FogSpan& span, const std::
   runs.end(first, behind);
 }
 
-// One ray's fog to a pixel's sums.
-void addRay(const Marcher& marcher, const shading::FogSpan& span, OitPlanes& planes, int x, int y,
-            PublishedClamps& clamps) {
-  const Fog& fog = marcher.fog;
-  const shading::FogSums sums = marcher.text->marchFog(fog.medium, span, planes.info.weight, fog.order);
+// A ray's fog to the sums of its pixel.
+void addMarched(const shading::FogSums& sums, int order, OitPlanes& planes, int x, int y, PublishedClamps& clamps) {
   if (!(sums.share > 0.0f)) return;
-  const shading::OitSums own = shading::fogOitSums(sums, fog.order);
+  const shading::OitSums own = shading::fogOitSums(sums, order);
   if (planes.published()) {
     blendPublished(publishedLayer(own), planes, x, y, clamps);
     return;
@@ -151,6 +149,12 @@ void addRay(const Marcher& marcher, const shading::FogSpan& span, OitPlanes& pla
   planes.depth.at(x, y) += added.depth;
   planes.light.at(x, y) += added.light;
   planes.frontZ.at(x, y) = std::min(planes.frontZ.at(x, y), shading::fogZ(sums));
+}
+
+void addRay(const Marcher& marcher, const shading::FogSpan& span, OitPlanes& planes, int x, int y,
+            PublishedClamps& clamps) {
+  const Fog& fog = marcher.fog;
+  addMarched(marcher.text->marchFog(fog.medium, span, planes.info.weight, fog.order), fog.order, planes, x, y, clamps);
 }
 
 // Depths of a deep picture's samples, so that no run reaches past one.
@@ -193,61 +197,128 @@ void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const Hel
   if (clamps) *clamps += counted;
 }
 
-FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
-                      const DeepOpaque* deep) {
-  const Marcher marcher(fog, gbuffer, lists.window, sample);
-  const int width = lists.window.width(), height = lists.window.height();
-  const int left = lists.window.x0 - gbuffer.data.x0, top = lists.window.y0 - gbuffer.data.y0;
-  std::vector<std::vector<Fragment>> rows(static_cast<std::size_t>(height));
-  std::vector<std::uint64_t> counts(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  tbb::parallel_for(0, height, [&](int y) {
-    const FlushDenormals flush;
-    std::vector<Fragment>& made = rows[static_cast<std::size_t>(y)];
-    std::vector<float> cuts;
-    for (int x = 0; x < width; ++x) {
-      const std::size_t pixel =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-      const float behind = std::min(gbuffer.viewZ.at(left + x, top + y), lists.solid.at(x, y).a);
-      cuts.clear();
-      for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
-        cuts.push_back(lists.fragments[i].z);
-      if (deep) cutBySamples(*deep, left + x, top + y, behind, cuts);
-      std::sort(cuts.begin(), cuts.end());
-      const std::size_t before = made.size();
-      marchRuns(marcher, marcher.span(x, y, behind), cuts, behind, made);
-      counts[pixel] = made.size() - before;
-    }
-  });
+namespace {
+
+// The fragments of a row of pixels, and how many each pixel has.
+struct RowOfRuns {
+  std::vector<Fragment> made;
+  std::vector<std::uint64_t> counts;
+};
+
+// The lists with the runs of their rows behind each pixel's own fragments.
+FragmentLists joined(const FragmentLists& lists, const std::vector<RowOfRuns>& rows) {
   FragmentLists result;
   result.window = lists.window;
   result.solid = lists.solid;
   result.offsets.assign(1, 0);
   const bool disperses = lists.disperses();
   std::size_t pixel = 0;
-  for (int y = 0; y < height; ++y) {
+  for (const RowOfRuns& row : rows) {
     std::size_t taken = 0;
-    const std::vector<Fragment>& made = rows[static_cast<std::size_t>(y)];
-    for (int x = 0; x < width; ++x, ++pixel) {
+    for (const std::uint64_t count : row.counts) {
       const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
                  end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
       result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
-      const auto own = made.begin() + static_cast<std::ptrdiff_t>(taken);
-      result.fragments.insert(result.fragments.end(), own, own + static_cast<std::ptrdiff_t>(counts[pixel]));
-      taken += counts[pixel];
+      const auto own = row.made.begin() + static_cast<std::ptrdiff_t>(taken);
+      result.fragments.insert(result.fragments.end(), own, own + static_cast<std::ptrdiff_t>(count));
+      taken += count;
       result.offsets.push_back(result.fragments.size());
-      if (!disperses) continue;
-      result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
-                               lists.dispersion.begin() + end);
-      result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
+      if (disperses) {
+        result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
+                                 lists.dispersion.begin() + end);
+        result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
+      }
+      ++pixel;
     }
   }
   return result;
 }
 
+// Runs before every pixel of the lists.
+//   marched         the corner of the marcher's window in the data window
+//   placeOf(i, x, y)  where a pixel lies in the data window; nothing where it is none
+template <class PlaceOf>
+FragmentLists withRuns(const Marcher& marcher, const GBuffer& gbuffer, const FragmentLists& lists,
+                       const DeepOpaque* deep, glm::ivec2 marched, const PlaceOf& placeOf) {
+  const int width = lists.window.width(), height = lists.window.height();
+  std::vector<RowOfRuns> rows(static_cast<std::size_t>(height));
+  tbb::parallel_for(0, height, [&](int y) {
+    const FlushDenormals flush;
+    RowOfRuns& row = rows[static_cast<std::size_t>(y)];
+    std::vector<float> cuts;
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const std::size_t before = row.made.size();
+      if (const std::optional<glm::ivec2> at = placeOf(pixel, x, y)) {
+        const float behind = std::min(gbuffer.viewZ.at(at->x, at->y), lists.solid.at(x, y).a);
+        cuts.clear();
+        for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
+          cuts.push_back(lists.fragments[i].z);
+        if (deep) cutBySamples(*deep, at->x, at->y, behind, cuts);
+        std::sort(cuts.begin(), cuts.end());
+        marchRuns(marcher, marcher.span(at->x - marched.x, at->y - marched.y, behind), cuts, behind, row.made);
+      }
+      row.counts.push_back(row.made.size() - before);
+    }
+  });
+  return joined(lists, rows);
+}
+
+}  // namespace
+
+FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
+                      const DeepOpaque* deep) {
+  const Marcher marcher(fog, gbuffer, lists.window, sample);
+  const glm::ivec2 corner(lists.window.x0 - gbuffer.data.x0, lists.window.y0 - gbuffer.data.y0);
+  return withRuns(marcher, gbuffer, lists, deep, corner,
+                  [&](std::size_t, int x, int y) { return std::optional<glm::ivec2>(corner + glm::ivec2(x, y)); });
+}
+
+FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
+                      const PixelPlaces& places) {
+  const Marcher marcher(fog, gbuffer, gbuffer.data, sample);
+  return withRuns(marcher, gbuffer, lists, nullptr, glm::ivec2(0), [&](std::size_t pixel, int, int) {
+    return pixel < places.size() ? std::optional<glm::ivec2>(places[pixel]) : std::nullopt;
+  });
+}
+
+MarchedFog::MarchedFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const PixelPlaces& places,
+                       const Image<glm::vec4>& solid)
+    : order_(fog.order), steps_(places.size()), netOpacity_(places.size(), 0.0f) {
+  const Marcher marcher(fog, gbuffer, gbuffer.data, sample);
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+    const FlushDenormals flush;
+    const glm::ivec2 at = places[i];
+    const shading::FogSpan span = marcher.span(at.x, at.y, std::min(gbuffer.viewZ.at(at.x, at.y), solid[i].a));
+    const float whole = marcher.text->fogDepth(fog.medium, span);
+    if (!(whole > 0.0f)) return;
+    netOpacity_[i] = shading::pldOneMinusExp(whole);
+    for (int k = 0; k < static_cast<int>(fog.medium.march.y); ++k) {
+      const shading::FogStep step = marcher.text->fogStep(fog.medium, span, k);
+      if (step.depth > 0.0f)
+        steps_[i].push_back({marcher.text->scatteredAt(fog.medium, step.middle, span.direction), step.depth, step.z});
+    }
+  });
+}
+
+void MarchedFog::addTo(OitPlanes& planes, PublishedClamps& clamps) const {
+  const auto width = static_cast<std::size_t>(planes.data.width());
+  tbb::enumerable_thread_specific<PublishedClamps> own;
+  tbb::parallel_for(std::size_t{0}, steps_.size(), [&](std::size_t i) {
+    const FlushDenormals flush;
+    shading::FogSums sums = shading::noFog();
+    for (const Step& step : steps_[i])
+      sums = shading::addStep(sums, step.depth, step.z, step.source, planes.info.weight, netOpacity_[i], order_);
+    addMarched(sums, order_, planes, static_cast<int>(i % width), static_cast<int>(i / width), own.local());
+  });
+  for (const PublishedClamps& each : own) clamps += each;
+}
+
 FogRay fogThrough(const Fog& fog, glm::vec3 origin, glm::vec3 direction, float zPerMetre, float z) {
   shading::FogText text(fog);
   const shading::FogSpan span = shading::fogSpan(fog.medium, origin, direction, zPerMetre, z);
-  shading::WeightSettings uniform{shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 1.0f};
+  shading::WeightSettings uniform{shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 1.0f, 1.0f};
   const shading::FogSums sums = text.marchFog(fog.medium, span, uniform, shading::PLD_FOG_ORDERED);
   return {sums.radiance, sums.passed, sums.depth};
 }

@@ -2,6 +2,7 @@
 // 11
 #pragma once
 #include "composite/deep/deep_opaque.h"
+#include "composite/probe_lists.h"
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
@@ -24,6 +25,29 @@ void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const Hel
 //   deep  a deep picture, of gbuffer's window, whose samples cut the fog too; null for a flat one
 FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
                       const DeepOpaque* deep = nullptr);
+
+// The same for lists of a window of their own, whose pixels lie in `places` of the data window.
+FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
+                      const PixelPlaces& places);
+
+// The steps of some pixels' marches, which no weight changes: to be added to sums of one weight after another.
+class MarchedFog {
+ public:
+  //   solid  of the pixels: rgb, planar z, row by row of the sums' window
+  MarchedFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const PixelPlaces& places,
+             const Image<glm::vec4>& solid);
+  // What addFog() adds, to sums whose pixels lie in `places` row by row.
+  void addTo(OitPlanes& planes, PublishedClamps& clamps) const;
+
+ private:
+  struct Step {
+    glm::vec3 source;  // radiance scattered towards the eye, per opacity
+    float depth, z;    // optical depth; planar metres
+  };
+  int order_;
+  std::vector<std::vector<Step>> steps_;
+  std::vector<float> netOpacity_;
+};
 
 // Light and transmission of the fog alone on one pixel's ray, front to back: for tests and studies.
 struct FogRay {

@@ -209,23 +209,45 @@ shading::PublishedTargets publishedOf(const UpsampledLayer& layer) {
 
 }  // namespace
 
+namespace {
+
+// Adds what texels become in a pixel to the sums at (x, y).
+void addUpsampled(const UpsampledLayer& layer, const OitPlanes& low, OitPlanes& planes, int x, int y,
+                  PublishedClamps& clamps) {
+  if (planes.published()) {
+    if (layer.isThere()) blendPublished(publishedOf(layer), planes, x, y, clamps);
+    return;
+  }
+  if (layer.isThere()) addLayer(layer, planes, x, y);
+  if (low.scatters()) addLayerScatter(layer, planes, x, y);
+}
+
+}  // namespace
+
 void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes,
                       PublishedClamps* clamps) {
   if (low.scatters()) addScatterPlanes(planes);
-  if (planes.published()) {
-    tbb::enumerable_thread_specific<PublishedClamps> own;
-    upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
-      if (layer.isThere()) blendPublished(publishedOf(layer), planes, x, y, own.local());
-    });
-    if (clamps)
-      for (const PublishedClamps& each : own) *clamps += each;
-    return;
-  }
-  if (low.disperses()) addDispersionPlane(planes);
-  upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
-    if (layer.isThere()) addLayer(layer, planes, x, y);
-    if (low.scatters()) addLayerScatter(layer, planes, x, y);
+  if (low.disperses() && !planes.published()) addDispersionPlane(planes);
+  tbb::enumerable_thread_specific<PublishedClamps> own;
+  upsample(low, view, sample,
+           [&](int x, int y, const UpsampledLayer& layer) { addUpsampled(layer, low, planes, x, y, own.local()); });
+  if (clamps)
+    for (const PublishedClamps& each : own) *clamps += each;
+}
+
+void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, const PixelPlaces& places,
+                      OitPlanes& planes, PublishedClamps& clamps) {
+  if (low.scatters()) addScatterPlanes(planes);
+  if (low.disperses() && !planes.published()) addDispersionPlane(planes);
+  const Upsampler upsampler(low, view, sample);
+  const auto width = static_cast<std::size_t>(planes.data.width());
+  tbb::enumerable_thread_specific<PublishedClamps> own;
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+    const FlushDenormals flush;
+    if (const std::optional<UpsampledLayer> layer = upsampler.at(places[i].x, places[i].y))
+      addUpsampled(*layer, low, planes, static_cast<int>(i % width), static_cast<int>(i / width), own.local());
   });
+  for (const PublishedClamps& each : own) clamps += each;
 }
 
 OitPlanes planesOfVeil(const Veil& veil, const Image<float>& meanZ, const LowView& view, const OitPlanes* scatter) {
@@ -295,32 +317,44 @@ LowResolutionFragments::LowResolutionFragments(const OitPlanes& low, const LowVi
   });
 }
 
-FragmentLists LowResolutionFragments::among(const FragmentLists& lists) const {
+template <class PlaceOf>
+FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const {
   FragmentLists result;
   result.window = lists.window;
   result.solid = lists.solid;
   result.offsets.assign(1, 0);
   const bool disperses = lists.disperses() || !dispersion_.empty();
-  std::size_t pixel = 0;
-  for (int y = lists.window.y0; y < lists.window.y1; ++y)
-    for (int x = lists.window.x0; x < lists.window.x1; ++x, ++pixel) {
-      const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
-                 end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
-      result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
-      if (lists.disperses())
-        result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
-                                 lists.dispersion.begin() + end);
-      if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
-      const Fragment& own = fragments_.at(x - data_.x0, y - data_.y0);
-      if (isThere(own) && own.z <= lists.solid[pixel].a) {
-        result.fragments.push_back(own);
-        if (disperses)
-          result.dispersion.push_back(dispersion_.empty() ? glm::vec4(0.0f)
-                                                          : dispersion_.at(x - data_.x0, y - data_.y0));
-      }
-      result.offsets.push_back(result.fragments.size());
+  for (std::size_t pixel = 0; pixel < lists.solid.size(); ++pixel) {
+    const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
+               end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
+    result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
+    if (lists.disperses())
+      result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
+                               lists.dispersion.begin() + end);
+    if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
+    const std::optional<glm::ivec2> at = placeOf(pixel);
+    if (at && isThere(fragments_.at(at->x, at->y)) && fragments_.at(at->x, at->y).z <= lists.solid[pixel].a) {
+      result.fragments.push_back(fragments_.at(at->x, at->y));
+      if (disperses) result.dispersion.push_back(dispersion_.empty() ? glm::vec4(0.0f) : dispersion_.at(at->x, at->y));
     }
+    result.offsets.push_back(result.fragments.size());
+  }
   return result;
+}
+
+FragmentLists LowResolutionFragments::among(const FragmentLists& lists) const {
+  const auto width = static_cast<std::size_t>(lists.window.width());
+  const glm::ivec2 corner(lists.window.x0 - data_.x0, lists.window.y0 - data_.y0);
+  return amongThose(lists, [&](std::size_t pixel) {
+    return std::optional<glm::ivec2>(corner +
+                                     glm::ivec2(static_cast<int>(pixel % width), static_cast<int>(pixel / width)));
+  });
+}
+
+FragmentLists LowResolutionFragments::among(const FragmentLists& lists, const PixelPlaces& places) const {
+  return amongThose(lists, [&](std::size_t pixel) {
+    return pixel < places.size() ? std::optional<glm::ivec2>(places[pixel]) : std::nullopt;
+  });
 }
 
 }  // namespace pellucid

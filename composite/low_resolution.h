@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
+#include "composite/probe_lists.h"
 #include "composite/veil.h"
 #include "gbuffer/accum.h"
 #include "gbuffer/fragments.h"
@@ -52,6 +53,10 @@ void upsample(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
 void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes,
                       PublishedClamps* clamps = nullptr);
 
+// The same for sums of a window of their own, whose pixels lie in `places` of the data window.
+void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, const PixelPlaces& places,
+                      OitPlanes& planes, PublishedClamps& clamps);
+
 // Sums of layers that are composited already, a layer for each touched pixel, for upsample().
 //   veil     of the low view; solids are in it
 //   meanZ    planar metres, where touched
@@ -64,9 +69,14 @@ class LowResolutionFragments {
   LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample, const Window& data);
   // Adds them to lists of a window inside of the data window; those behind a pixel's solid are left out.
   FragmentLists among(const FragmentLists& lists) const;
+  // The same for lists of a window of their own, whose pixels lie in `places`.
+  FragmentLists among(const FragmentLists& lists, const PixelPlaces& places) const;
   bool scatters() const { return scatters_; }
 
  private:
+  template <class PlaceOf>
+  FragmentLists amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const;
+
   Window data_;
   Image<Fragment> fragments_;  // coverage 0 and no radiance where there is none
   Image<glm::vec4> dispersion_;

@@ -5,6 +5,7 @@
 
 #include "gbuffer/plane_values.h"
 #include "gbuffer/planes_match.h"
+#include "gbuffer/weight_reference.h"
 
 namespace pellucid {
 namespace {
@@ -69,6 +70,12 @@ void mergePlanes(OitPlanes& a, const OitPlanes& b) {
 
 void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, const std::string& fileB) {
   expectSamePlanes(b, fileB, a, fileA);
+  if (const double factor = referenceFactor(b.info.weight, a.info.weight); factor != 1.0) {
+    OitPlanes scaled = b;
+    if (!scaleWeights(scaled, factor)) refuseReference(b, fileB, a, fileA);
+    scaled.info.weight = a.info.weight;
+    return mergePlanes(a, scaled, fileA, fileB);
+  }
   if (b.scatters()) addScatterPlanes(a);
   if (b.disperses()) addDispersionPlane(a);
   for (const PlaneSpec& plane : planesOf(modelOf(b)))

@@ -13,7 +13,7 @@ namespace pellucid {
 // How the sums were made. Planes that do not match are refused: their sums mean different things.
 struct OitInfo {
   std::string method = "phenomenological";
-  shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
+  shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f, 1.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
   std::string tier = "float";  // "float", "exact" or "published"
   std::string solidHash;       // of the solid plane: sums behind different solids do not add

@@ -67,6 +67,9 @@ struct ExrDocument {
 // missing, damaged, cut short, or refused by name (sub-sampled channels, cube maps), ResourceError when memory runs
 // out.
 ExrDocument readExr(const std::string& path);
+// A text of the first part's header alone, without any pixels; nothing where it has none by that name. Throws
+// InputError.
+std::optional<std::string> exrText(const std::string& path, const std::string& name);
 
 // What is to change in a part. Bytes as in ExrChannel.
 struct ExrPartEdit {

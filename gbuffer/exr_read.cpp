@@ -179,4 +179,18 @@ ExrDocument readExr(const std::string& path) {
   return document;
 }
 
+std::optional<std::string> exrText(const std::string& path, const std::string& name) {
+  const auto source = std::make_shared<ExrSource>(path);
+  checkLayout(*source, path);
+  try {
+    exr::MultiPartInputFile file(*source, exrThreads(), false);
+    const auto* text = file.header(0).findTypedAttribute<exr::StringAttribute>(name);
+    return text ? std::optional<std::string>(text->value()) : std::nullopt;
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(path + ": cannot be read: memory ran out");
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: damaged: {}", path, error.what()));
+  }
+}
+
 }  // namespace pellucid

@@ -4,6 +4,7 @@
 
 #include "gbuffer/camera_match.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/weight_reference.h"
 #include "gbuffer/weight_text.h"
 
 namespace pellucid {
@@ -41,7 +42,10 @@ void expectSamePlanes(const OitPlanes& planes, const std::string& file, const Oi
   pair.expect("data window", planes.data, before.data);
   pair.expectView(planes.camera, before.camera);
   pair.expect("method", planes.info.method, before.info.method);
-  pair.expect("weight", weightText(planes.info.weight), weightText(before.info.weight));
+  if (!sameButForReference(planes.info.weight, before.info.weight))
+    throw MeaningError(fmt::format("{}: weight: found {}, expected {} as in {}: accumulate it with --weight-from {}",
+                                   file, weightText(planes.info.weight), weightText(before.info.weight), fileBefore,
+                                   fileBefore));
   pair.expect("normalisation", std::to_string(planes.info.normalisation), std::to_string(before.info.normalisation));
   pair.expect("tier", planes.info.tier, before.info.tier);
   if (planes.info.solidHash != before.info.solidHash)
@@ -49,6 +53,15 @@ void expectSamePlanes(const OitPlanes& planes, const std::string& file, const Oi
         fmt::format("{}: found other solids than in {}, expected the same: accumulate each with --held-out-by the "
                     "other, so that what stands behind a solid of one is in neither",
                     file, fileBefore));
+}
+
+void refuseReference(const OitPlanes& planes, const std::string& file, const OitPlanes& before,
+                     const std::string& fileBefore) {
+  throw MeaningError(fmt::format(
+      "{}: weight: found a reference depth of {} m, expected {} m as in {}: sums over the one do not fit {} "
+      "over the other; accumulate it with --weight-from {}",
+      file, planes.info.weight.reference, before.info.weight.reference, fileBefore,
+      planes.published() ? "halves" : "floats", fileBefore));
 }
 
 void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,

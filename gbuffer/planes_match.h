@@ -10,9 +10,14 @@ namespace pellucid {
 // All throw MeaningError that names both files, what was found and what was expected. Cameras agree when sameView says
 // so.
 
-// Sums add when windows, places, camera, method, weight, normalisation, tier and solids agree.
+// Sums add when windows, places, camera, method, weight, normalisation, tier and solids agree. Powers of depth may be
+// over other reference depths: mergePlanes() brings them to one.
 void expectSamePlanes(const OitPlanes& planes, const std::string& file, const OitPlanes& before,
                       const std::string& fileBefore);
+
+// Says that the weights of planes cannot be brought to the reference depth of those before.
+[[noreturn]] void refuseReference(const OitPlanes& planes, const std::string& file, const OitPlanes& before,
+                                  const std::string& fileBefore);
 
 // mergePlanes (accum.h) with the names of the files in its error.
 void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, const std::string& fileB);

@@ -35,9 +35,10 @@ const char* scaleText(WeightScale scale) {
     case WeightScale::free:
       return "the same picture at every scale";
     case WeightScale::ranged:
-      return "the same picture at every scale, where the range grows with the scene";
+      return "the same picture at every scale, where --weight-range grows with the scene";
     case WeightScale::metres:
-      return "its constants are metres: a scene in another unit is another picture";
+      return "its constants are the paper's, in metres: a larger scene is another picture, unless --weight-reference "
+             "says how many metres their unit is";
   }
   return "";
 }
@@ -46,8 +47,9 @@ const char* scaleText(WeightScale scale) {
 
 std::string weightText(const shading::WeightSettings& weight) {
   const DepthWeight* row = depthWeightOf(weight.kind);
-  return fmt::format("{} {:.9g} {:.9g} {:.9g}", row ? row->name : fmt::format("kind{}", weight.kind), weight.rangeNear,
-                     weight.rangeFar, weight.exponent);
+  const std::string text = fmt::format("{} {:.9g} {:.9g} {:.9g}", row ? row->name : fmt::format("kind{}", weight.kind),
+                                       weight.rangeNear, weight.rangeFar, weight.exponent);
+  return row && row->reference != WeightReference::none ? fmt::format("{} {:.9g}", text, weight.reference) : text;
 }
 
 std::optional<shading::WeightSettings> readWeightText(const std::string& text) {
@@ -56,11 +58,15 @@ std::optional<shading::WeightSettings> readWeightText(const std::string& text) {
   words >> name;
   const DepthWeight* row = rowNamed(name);
   if (!row) return std::nullopt;
-  shading::WeightSettings weight{row->kind, 0.0f, 0.0f, 0.0f};
-  for (float* value : {&weight.rangeNear, &weight.rangeFar, &weight.exponent}) {
-    if (!(words >> word)) return std::nullopt;
+  shading::WeightSettings weight{row->kind, 0.0f, 0.0f, 0.0f, 1.0f};
+  for (float* value : {&weight.rangeNear, &weight.rangeFar, &weight.exponent, &weight.reference}) {
+    if (!(words >> word)) {
+      if (value != &weight.reference) return std::nullopt;
+      break;  // of before there were references: metres
+    }
     const std::optional<float> number = numberOf(word);
-    if (!number) return std::nullopt;
+    if (!number || (value == &weight.reference && (row->reference == WeightReference::none || !(*number > 0.0f))))
+      return std::nullopt;
     *value = *number;
   }
   if (words >> word) return std::nullopt;
@@ -105,11 +111,21 @@ std::string rangedWeights() {
   return names;
 }
 
+std::string referenceWeights() {
+  std::string names;
+  for (const DepthWeight& row : kDepthWeights)
+    if (row.reference != WeightReference::none) names += (names.empty() ? "" : ", ") + form(row);
+  return names;
+}
+
 std::string weightsHelp() {
   std::string text;
   for (const DepthWeight& row : kDepthWeights)
     text += fmt::format("{:<10} {}; {}{}\n", form(row), row.help, scaleText(row.scale),
-                        row.readsRange ? "; reads --weight-range" : "");
+                        row.readsRange ? "; reads --weight-range"
+                        : row.reference == WeightReference::depth
+                            ? "; --weight-reference is where it weighs 1, which shows in no picture"
+                            : "");
   return text;
 }
 

@@ -7,9 +7,10 @@
 
 namespace pellucid {
 
-// "eq5 0.1 1000 3": the name that --weight takes, rangeNear, rangeFar and exponent, with every bit of them.
+// "power 0.1 1000 3 2": the name that --weight takes, rangeNear, rangeFar, exponent and, of weights that read one, the
+// reference, with every bit of them.
 std::string weightText(const shading::WeightSettings& weight);
-// The reverse. Nothing for text that weightText does not write.
+// The reverse. Nothing for text that weightText does not write; without a reference, as it once wrote, 1 m.
 std::optional<shading::WeightSettings> readWeightText(const std::string& text);
 
 // "eq5", "power:3": kind and parameter from the text of --weight, the range from `given`.
@@ -18,8 +19,9 @@ shading::WeightSettings parseWeight(const std::string& text, const shading::Weig
 // The text of --weight that asks for it, "power:3".
 std::string weightName(const shading::WeightSettings& weight);
 
-std::string weightNames();    // "eq5, eq7, ..., power:K, uniform"
-std::string rangedWeights();  // those that read a range: "eq5, eq10, eq10z"
-std::string weightsHelp();    // a line for every row
+std::string weightNames();       // "eq5, eq7, ..., power:K, uniform"
+std::string rangedWeights();     // those that read a range: "eq5, eq10, eq10z"
+std::string referenceWeights();  // those that read a reference: "eq7, ..., power:K"
+std::string weightsHelp();       // a line for every row
 
 }  // namespace pellucid

@@ -42,6 +42,8 @@ const std::vector<HelpRow> kRows{
     {"--precision", kMethod, ""},
     {"--weight", kMethod, "WEIGHT"},
     {"--weight-range", kMethod, "NEAR:FAR"},
+    {"--weight-reference", kMethod, "METRES"},
+    {"--weight-from", kMethod, "FILE.exr"},
     {"--normalisation", kMethod, ""},
     {"--self-modulation", kMethod, ""},
     {"--systems", kMethod, ""},

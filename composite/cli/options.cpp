@@ -203,6 +203,14 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
                                   weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
                       ->capture_default_str();
   verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for " + rangedWeights());
+  verb.add_option(
+          "--weight-reference", weightReference,
+          "Metres: where power:K and fig6 weigh 1, which shows in no picture (where the scene begins); the unit "
+          "of the papers' constants in " +
+              referenceWeights())
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--weight-from", weightFrom,
+                  "Picture or planes whose weight, range and reference to take: one for a sequence, for sums that add");
 }
 
 Tier tierOf(const std::string& precision) {
@@ -221,8 +229,10 @@ void MethodFlags::into(Request& request) const {
   if (weight == "auto")
     request.sums.fitWeight = true;
   else if (weightOption_ && weightOption_->count() > 0)
-    request.sums.weight = parseWeight(weight, {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f});
+    request.sums.weight = parseWeight(weight, PassSettings().weight);
   if (!weightRange.empty()) request.sums.weightRange = parseRange(weightRange, "--weight-range");
+  request.sums.weightReference = weightReference;
+  request.sums.weightFrom = weightFrom;
   if (normalisationOption_ && normalisationOption_->count() > 0)
     request.sums.normalisation =
         normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED : shading::PLD_NORMALISE_SPECTRAL;

@@ -25,7 +25,9 @@ CameraChoice cameraChoice(const std::string& text);              // "", a name o
 SurroundingsChoice surroundingsChoice(const std::string& text);  // "", R,G,B or a file; throws UsageError
 
 struct MethodFlags {
-  std::string method = "phenomenological", precision = "float", normalisation = "spectral", weight = "eq5", weightRange;
+  std::string method = "phenomenological", precision = "float", normalisation = "spectral", weight = "eq5", weightRange,
+              weightFrom;
+  std::optional<double> weightReference;
   void addTo(CLI::App& verb, bool listsToo);
   void addWeightTo(CLI::App& verb, bool takesAuto);  // --normalisation, --weight, --weight-range alone
   // What paints, the tier and the weight. --method stochastic is StochasticFlags'. Throws UsageError.

@@ -105,9 +105,10 @@ void RenderFlags::paintInto(Request& request) const {
     if (systems != "off")
       throw UsageError("--tolerance: found it with --systems, expected one of them: a tolerance sorts what needs it");
     if (listed && listed->method.name == "blended") {
-      if (request.sums.weight || request.sums.fitWeight)
+      if (request.sums.weight || request.sums.fitWeight || !request.sums.weightFrom.empty())
         throw UsageError("--weight: found it with --method blended: its layers are not weighed");
-      request.sums.weight = shading::WeightSettings{shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 3.0f};
+      request.sums.weight = PassSettings().weight;
+      request.sums.weight->kind = shading::PLD_WEIGHT_UNIFORM;
     }
     request.paint = PaintWithin{*tolerance};
   }

@@ -34,7 +34,7 @@ LayerMix mixWeighted(const std::vector<MethodLayer>& layers, const MethodChoice&
 }
 
 LayerMix mixBlended(const std::vector<MethodLayer>& layers, const MethodChoice&) {
-  return mixSums(layers, {shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 0.0f}, shading::PLD_NORMALISE_SPECTRAL);
+  return mixSums(layers, {shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 0.0f, 1.0f}, shading::PLD_NORMALISE_SPECTRAL);
 }
 
 }  // namespace pellucid

@@ -13,6 +13,7 @@
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/sums.h"
+#include "composite/pipeline/weight_file.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/weight_text.h"
 
@@ -22,6 +23,12 @@ namespace {
 // Requests of one light may share it.
 bool sameLight(const Request& a, const Request& b) {
   return a.passes == b.passes && a.particleLight == b.particleLight && a.shadows == b.shadows && a.fog == b.fog;
+}
+
+// Whether a power of depth needs to know where the layers begin.
+bool asksDepths(const SumsRequest& sums) {
+  const DepthWeight* row = sums.weight ? depthWeightOf(sums.weight->kind) : nullptr;
+  return !sums.weightReference && (sums.fitWeight || (row && row->reference == WeightReference::depth));
 }
 
 // The beauty as shadows leave it, for a file of planes; empty where they changed nothing.
@@ -86,7 +93,12 @@ Compositor::~Compositor() = default;
 
 Plan Compositor::plan(const Request& request) const {
   validate(request);
-  return planFor(request, facts_);
+  const Request weighed = weighedByFile(request);
+  if (asksDepths(weighed.sums) && !knowsDepths_) {
+    addLayerDepths(*shot_, facts_);
+    knowsDepths_ = true;
+  }
+  return planFor(weighed, facts_);
 }
 
 TransparentPass* Compositor::triangles() {
@@ -246,7 +258,7 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
 
 std::vector<std::string> Compositor::write(const std::string& path, const Result& result) const {
   const std::map<std::string, std::string> attributes{{"pellucid:method", result.plan.method},
-                                                      {"pellucid:weight", weightText(result.plan.pass.weight)}};
+                                                      {kWeightAttribute, weightText(result.plan.pass.weight)}};
   return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,
                    attributes);
 }

@@ -33,7 +33,7 @@ class Compositor {
     lightOf(request);
     journal_.stages = Stages();
   }
-  // The weight that --weight auto would take.
+  // The weight that --weight auto would take. Of the picture that the request asks for.
   shading::WeightSettings fitWeight(Request request);
   // Composites. The picture's bits do not depend on what was run before.
   Result run(const Request& request);
@@ -61,7 +61,8 @@ class Compositor {
   Journal journal_;
   Device device_;
   std::unique_ptr<Shot> shot_;
-  ShotFacts facts_;
+  mutable ShotFacts facts_;  // with the depths of the layers once a weight has asked
+  mutable bool knowsDepths_ = false;
   std::unique_ptr<TransparentPass> triangles_;
   // The light of the last request; requests that differ in nothing that lights share it.
   std::unique_ptr<Lighting> lighting_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "composite/pipeline/layer_span.h"
 #include "engine_bridge/scene/blocks.h"
 
 namespace pellucid {
@@ -25,6 +26,14 @@ ShotFacts factsOf(const Shot& shot) {
   facts.rangeFar = shot.camera.rangeFar;
   for (const Primitive& primitive : shot.scene.primitives) facts.triangles += primitive.triangles();
   return facts;
+}
+
+void addLayerDepths(const Shot& shot, ShotFacts& facts) {
+  DepthSpan span = layerSpanOf(shot.scene, shot.camera);
+  for (const std::unique_ptr<DeepSource>& file : shot.deep) span.add(layerSpanOf(file, shot.opaque.gbuffer));
+  if (span.empty()) return;
+  facts.layersNear = span.low;
+  facts.layersFar = span.high;
 }
 
 }  // namespace pellucid

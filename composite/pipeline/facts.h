@@ -16,9 +16,15 @@ struct ShotFacts {
   bool marksLowResolution = false;         // some transparent material is to be drawn at low resolution
   std::size_t lights = 0;                  // that shine
   double rangeNear = 0.0, rangeFar = 0.0;  // of the camera, metres; 0 where it has none
-  std::size_t triangles = 0;               // of one copy of every primitive
+  // Depths of all that is transparent, metres: of the whole scene, not of what a frame shows. 0 where nobody has asked
+  // or nothing is. The nearer may lie behind the eye.
+  double layersNear = 0.0, layersFar = 0.0;
+  std::size_t triangles = 0;  // of one copy of every primitive
 };
 
+// All but the depths of the layers.
 ShotFacts factsOf(const Shot& shot);
+// Those, which takes a look at every vertex and every deep sample.
+void addLayerDepths(const Shot& shot, ShotFacts& facts);
 
 }  // namespace pellucid

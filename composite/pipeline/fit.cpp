@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "composite/pipeline/drawn_probes.h"
 #include "composite/study/fit_weight.h"
 #include "gbuffer/weight_text.h"
 
@@ -9,25 +10,25 @@ namespace pellucid {
 
 std::string weightFlags(const shading::WeightSettings& weight) {
   const DepthWeight* row = depthWeightOf(weight.kind);
-  const std::string range =
-      row && row->readsRange ? fmt::format(" --weight-range {}:{}", weight.rangeNear, weight.rangeFar) : "";
-  return "--weight " + weightName(weight) + range;
+  std::string flags = "--weight " + weightName(weight);
+  if (row && row->readsRange) flags += fmt::format(" --weight-range {}:{}", weight.rangeNear, weight.rangeFar);
+  if (row && row->reference == WeightReference::unit && weight.reference != 1.0f)
+    flags += fmt::format(" --weight-reference {}", weight.reference);
+  return flags;
 }
 
 shading::WeightSettings fittedWeight(const PaintContext& context, const PassSettings& sample) {
-  // Some thousand probes fix a mean error to about a percent.
-  constexpr std::size_t kProbes = 16384;
+  std::size_t count = 0;
   const WeightFit fit = context.journal.time("fit weight", [&] {
-    WeightProbes probes(*context.picture.gbuffer, kProbes);
-    PassSettings centre = sample;
-    centre.sample = {0.5, 0.5};
-    centre.probeCell = probes.cell();
-    context.sources.each({centre, context.picture, VolumeRule::midDepth},
-                         [&](const FragmentLists& lists) { probes.add(lists); });
-    return fitWeight(probes, sample.weight, sample.normalisation);
+    DrawnProbes probes(context, sample);
+    count = probes.count();
+    return fitWeight(
+        sample.weight, probes.depths(),
+        [&](const shading::WeightSettings& weight) { return probes.roughError(weight); },
+        [&](const shading::WeightSettings& weight) { return probes.error(weight); });
   });
   context.journal.note(fmt::format("--weight auto: mean error {:.4g} on {} probes; the same again: {}", fit.meanError,
-                                   fit.probes, weightFlags(fit.weight)));
+                                   count, weightFlags(fit.weight)));
   return fit.weight;
 }
 

@@ -32,15 +32,14 @@ void meanDepths(const FragmentLists& lists, Image<float>& meanZ) {
     }
 }
 
-// Solids of the layers of full resolution, for what stands behind them at low resolution.
+}  // namespace
+
 Image<glm::vec4> solidsOf(TransparentPass& pass, const PassSettings& full) {
   const Image<float> z = pass.solidDepth(full);
   Image<glm::vec4> solid(z.width(), z.height());
   for (std::size_t i = 0; i < z.size(); ++i) solid[i] = glm::vec4(0.0f, 0.0f, 0.0f, z[i]);
   return solid;
 }
-
-}  // namespace
 
 LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettings& sample, int pass, Mixer& mixer,
                                    PassStatistics& statistics) {

@@ -19,15 +19,25 @@ constexpr double kNearDefault = 0.1, kFarOverNear = 1e4;  // of a camera that st
 // A pixel's veil, its mean and the picture; then the planes of a pass as floats.
 constexpr std::uint64_t kVeilBytes = 2 * 60 + 16, kPlaneBytes = 128, kScatterBytes = 52;
 
+// Where the transparent things begin, as the whole scene and the camera have it: powers of depth weigh 1 there. What is
+// nearer than a 64th of the farthest would leave most of the others without a weight.
+double referenceOf(const ShotFacts& facts, double rangeNear) {
+  constexpr double kDeepest = 64.0;
+  const double nearest = std::max(facts.layersNear, facts.layersFar / kDeepest);
+  return nearest > 0.0 ? nearest : rangeNear;
+}
+
 // The range comes from the request, else from the camera.
 shading::WeightSettings weightOf(const SumsRequest& sums, const ShotFacts& facts) {
-  shading::WeightSettings weight =
-      sums.weight.value_or(shading::WeightSettings{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f});
+  shading::WeightSettings weight = sums.weight.value_or(PassSettings().weight);
   double rangeNear = facts.rangeNear > 0 ? facts.rangeNear : kNearDefault;
   double rangeFar = facts.rangeFar > rangeNear ? facts.rangeFar : rangeNear * kFarOverNear;
   if (sums.weightRange) std::tie(rangeNear, rangeFar) = *sums.weightRange;
   weight.rangeNear = static_cast<float>(rangeNear);
   weight.rangeFar = static_cast<float>(rangeFar);
+  const DepthWeight* row = depthWeightOf(weight.kind);
+  const bool overDepth = sums.fitWeight || (row && row->reference == WeightReference::depth);
+  weight.reference = static_cast<float>(sums.weightReference.value_or(overDepth ? referenceOf(facts, rangeNear) : 1.0));
   return weight;
 }
 

@@ -35,6 +35,11 @@ bool readsRange(const SumsRequest& sums) {
   const DepthWeight* row = depthWeightOf(sums.weight->kind);
   return row && row->readsRange;
 }
+bool readsReference(const SumsRequest& sums) {
+  if (sums.fitWeight) return true;
+  const DepthWeight* row = sums.weight ? depthWeightOf(sums.weight->kind) : nullptr;
+  return row && row->reference != WeightReference::none;
+}
 bool asksPlanesOf(const Request& request) {
   for (const LayerName name : request.layers)
     if (name == LayerName::depth || name == LayerName::weight || name == LayerName::count) return true;
@@ -53,8 +58,21 @@ const std::vector<Refusal>& refusals() {
        [](const Request& r) { return (r.sums.weight || r.sums.fitWeight) && !weighs(r); }},
       {"--weight-range", "a range", "--method {}", "none, or a method that weighs", "its layers are not weighed",
        [](const Request& r) { return r.sums.weightRange && !weighs(r); }},
-      {"--weight-range", "a range", "a weight without one", "eq5, eq10 or eq10z", "the others read no range",
+      {"--weight-range", "a range", "a weight without one", "eq5, eq10, eq10z or linear", "the others read no range",
        [](const Request& r) { return r.sums.weightRange && weighs(r) && !readsRange(r.sums); }},
+      {"--weight-reference", "a depth", "--method {}", "none, or a method that weighs", "its layers are not weighed",
+       [](const Request& r) { return r.sums.weightReference && !weighs(r); }},
+      {"--weight-reference", "a depth", "a weight without one",
+       "power:K, fig6, eq7 to eq9, eq7z to eq9z, fig1 or fig10:K", "the others read none",
+       [](const Request& r) { return r.sums.weightReference && weighs(r) && !readsReference(r.sums); }},
+      {"--weight-from", "a file", "--method {}", "none, or a method that weighs", "its layers are not weighed",
+       [](const Request& r) { return !r.sums.weightFrom.empty() && !weighs(r); }},
+      {"--weight-from", "a file", "--weight, --weight-range or --weight-reference", "one or the other",
+       "the file says all three",
+       [](const Request& r) {
+         return !r.sums.weightFrom.empty() &&
+                (r.sums.weight || r.sums.fitWeight || r.sums.weightRange || r.sums.weightReference);
+       }},
       {"--normalisation", "one", "--method {}", "none, or a method that normalises",
        "it averages in a way of its own, or not at all",
        [](const Request& r) { return r.sums.normalisation && !normalises(r); }},
@@ -104,6 +122,8 @@ void dropUnread(Request& request) {
   if (!weighs(request)) {
     sums.weight.reset();
     sums.weightRange.reset();
+    sums.weightReference.reset();
+    sums.weightFrom.clear();
     sums.fitWeight = false;
   }
   const bool published = request.tier == Tier::published;
@@ -118,7 +138,10 @@ void dropUnread(Request& request) {
 void setWeight(Request& request, const shading::WeightSettings& weight) {
   if (!weighs(request)) return;
   request.sums.fitWeight = false;
+  request.sums.weightFrom.clear();
   request.sums.weight = weight;
+  request.sums.weightReference.reset();
+  if (readsReference(request.sums)) request.sums.weightReference = static_cast<double>(weight.reference);
   if (readsRange(request.sums))
     request.sums.weightRange = {static_cast<double>(weight.rangeNear), static_cast<double>(weight.rangeFar)};
   else

@@ -42,11 +42,15 @@ using Paint = std::variant<PaintSums, PaintSorted, PaintListed, PaintSamples, Pa
 
 // How layers are weighed and averaged, where the method reads it.
 struct SumsRequest {
-  std::optional<shading::WeightSettings> weight;         // kind and exponent; the range is below
+  std::optional<shading::WeightSettings> weight;         // kind and exponent; the rest is below
   bool fitWeight = false;                                // --weight auto: fitted to the truth on probe pixels
   std::optional<std::pair<double, double>> weightRange;  // metres; else the camera's, else 0.1 to 1000
-  std::optional<int> normalisation;                      // PLD_NORMALISE_*
-  std::optional<bool> selfModulation;                    // PT17 eq. 14
+  // Metres: of powers of depth, where they weigh 1; else where the scene begins. Of functions whose constants are
+  // lengths, the unit of those; else 1.
+  std::optional<double> weightReference;
+  std::string weightFrom;              // picture or planes whose header says all three, or ""
+  std::optional<int> normalisation;    // PLD_NORMALISE_*
+  std::optional<bool> selfModulation;  // PT17 eq. 14
 };
 
 struct NamedCamera {

@@ -15,6 +15,7 @@
 #include "gbuffer/errors.h"
 #include "gbuffer/planes_io.h"
 #include "gbuffer/planes_match.h"
+#include "gbuffer/weight_reference.h"
 
 namespace pellucid {
 namespace {
@@ -80,7 +81,7 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
   std::vector<PassPlanes> passes = journal.time("read planes", [&] { return readPasses(request.planes[0]); });
   for (std::size_t k = 1; k < request.planes.size(); ++k)
     journal.time("read planes", [&] {
-      const std::vector<PassPlanes> more = readPasses(request.planes[k]);
+      std::vector<PassPlanes> more = readPasses(request.planes[k]);
       if (more.size() != passes.size())
         throw MeaningError(fmt::format("{}: found {} passes, expected {} of {}", request.planes[k], more.size(),
                                        passes.size(), request.planes[0]));
@@ -91,8 +92,11 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
                         request.planes[k]));
       if (!more[0].relit.empty()) passes[0].relit = more[0].relit;
       for (std::size_t i = 0; i < passes.size(); ++i) {
+        const double factor = referenceFactor(more[i].planes.info.weight, passes[i].planes.info.weight);
         mergePlanes(passes[i].planes, more[i].planes, request.planes[0], request.planes[k]);
         addScatter(passes[i].scatter, more[i].scatter, request.planes[0], request.planes[k]);
+        if (!scaleWeights(more[i].rims, factor))
+          refuseReference(more[i].planes, request.planes[k], passes[i].planes, request.planes[0]);
         passes[i].rims.add(more[i].rims);
       }
     });

@@ -105,7 +105,7 @@ StudyOutcome runStudy(Compositor& compositor, std::vector<StudyCandidate> candid
   StudyOutcome outcome;
   outcome.rows.resize(candidates.size());
   outcome.pictures.resize(candidates.size());
-  outcome.weight = weightText(planFor(base, compositor.facts()).pass.weight);
+  outcome.weight = weightText(compositor.plan(base).pass.weight);
   if (base.sums.fitWeight) {
     const shading::WeightSettings fitted = compositor.fitWeight(base);
     outcome.weight = weightText(fitted);

@@ -21,20 +21,6 @@ void countLow(const PassStatistics& low, int factor, PassStatistics& whole) {
   whole.shadowSeconds += low.shadowSeconds;
 }
 
-// Sums of the marked materials over the view, of the plan's tier but for the published one, whose texels are floats.
-OitPlanes lowSums(const PaintContext& context, const LowView& view, const PassSettings& sample) {
-  TransparentPass& pass = *context.sources.triangles();
-  PassSettings part = lowResolutionPart(sample);
-  part.tier = SumsTier::float32;
-  if (context.plan.isPublished()) part.normalisation = shading::PLD_NORMALISE_SPECTRAL;
-  const DrawnOver over(pass, view, *context.picture.gbuffer, context.shot.camera);
-  if (!context.plan.isExact()) return pass.accumulate(part);
-  OitPlanes planes = emptySums(context.plan, part, view.gbuffer.display, view.gbuffer.data);
-  PublishedClamps none;
-  pass.fragments(part, [&](const FragmentLists& lists) { foldInto(context.plan, lists, part, planes, none); });
-  return planes;
-}
-
 void addLow(const PaintContext& context, const PassSettings& sample, OitPlanes& planes, PassStatistics& statistics) {
   const int factor = context.plan.lowResolution;
   if (factor == 1) return;
@@ -109,6 +95,19 @@ PassSettings lowResolutionPart(const PassSettings& sample) {
   part.layers = LayerChoice::lowResolution;
   part.fog = nullptr;
   return part;
+}
+
+OitPlanes lowSums(const PaintContext& context, const LowView& view, const PassSettings& sample) {
+  TransparentPass& pass = *context.sources.triangles();
+  PassSettings part = lowResolutionPart(sample);
+  part.tier = SumsTier::float32;
+  if (context.plan.isPublished()) part.normalisation = shading::PLD_NORMALISE_SPECTRAL;
+  const DrawnOver over(pass, view, *context.picture.gbuffer, context.shot.camera);
+  if (!context.plan.isExact()) return pass.accumulate(part);
+  OitPlanes planes = emptySums(context.plan, part, view.gbuffer.display, view.gbuffer.data);
+  PublishedClamps none;
+  pass.fragments(part, [&](const FragmentLists& lists) { foldInto(context.plan, lists, part, planes, none); });
+  return planes;
 }
 
 OitPlanes sumsOf(const PaintContext& context, const PassSettings& sample) {

@@ -10,6 +10,8 @@ namespace pellucid {
 // in them. Of a flat picture.
 OitPlanes sumsOf(const PaintContext& context, const PassSettings& sample);
 
+// Sums of the marked materials over the view, of the plan's tier but for the published one, whose texels are floats.
+OitPlanes lowSums(const PaintContext& context, const LowView& view, const PassSettings& sample);
 // The same over a deep picture, each of whose samples has sums of its own.
 struct PlacedSums {
   OitPlanes places;   // of placesWindow()

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
-#include "composite/pipeline/layer_source.h"
-#include "engine_bridge/scene/triangle_source.h"
+#include "composite/pipeline/layer_span.h"
 
 namespace pellucid {
 namespace {
@@ -56,43 +54,10 @@ Scene partOf(const Scene& scene, const std::vector<std::size_t>& group, std::siz
   return part;
 }
 
-// Planar distance to the middle of the bounding box of what is transparent; nothing where nothing is.
-std::optional<double> middleOf(const Scene& scene, const Camera& camera) {
-  constexpr std::size_t kBatch = 1024;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  VertexPlaces places;
-  TriangleBatch batch;
-  for (const Instance& instance : scene.instances) {
-    const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
-    if (!scene.materials[static_cast<std::size_t>(primitive.material)].transparent()) continue;
-    const glm::dmat4 viewFromObject = camera.viewFromWorld * instance.worldFromObject;
-    for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
-      readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
-      for (const Vertex& vertex : batch.vertices) {
-        const double z = -(viewFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0)).z;
-        low = std::min(low, z);
-        high = std::max(high, z);
-      }
-    }
-  }
-  if (!(low <= high)) return std::nullopt;
-  return 0.5 * (low + high);
-}
-
-// The same of a deep file: of the samples in front of the picture.
-std::optional<double> middleOf(const std::unique_ptr<DeepSource>& file, const GBuffer& gbuffer) {
-  float low = std::numeric_limits<float>::infinity(), high = -low;
-  LayerSources source(nullptr);
-  source.join(deepFiles({&file, 1}));
-  const PassSettings settings;
-  source.each({settings, {&gbuffer, nullptr}, VolumeRule::midDepth}, [&](const FragmentLists& lists) {
-    for (const Fragment& fragment : lists.fragments) {
-      low = std::min(low, fragment.z);
-      high = std::max(high, fragment.z);
-    }
-  });
-  if (!(low <= high)) return std::nullopt;
-  return 0.5 * (static_cast<double>(low) + static_cast<double>(high));
+// Planar distance to the middle of what is transparent; nothing where nothing is.
+std::optional<double> middleOf(const DepthSpan& span) {
+  if (span.empty()) return std::nullopt;
+  return 0.5 * (span.low + span.high);
 }
 
 }  // namespace
@@ -103,13 +68,13 @@ std::vector<LayerSystem> splitSystems(SystemRule rule, const Shot& shot, Device&
   std::vector<LayerSystem> systems;
   for (std::size_t i = 0; i < names.size(); ++i) {
     LayerSystem system{names[i], 0.0, partOf(shot.scene, group, i), nullptr, nullptr};
-    const std::optional<double> z = middleOf(system.scene, shot.camera);
+    const std::optional<double> z = middleOf(layerSpanOf(system.scene, shot.camera));
     if (!z) continue;
     system.z = *z;
     systems.push_back(std::move(system));
   }
   for (const std::unique_ptr<DeepSource>& file : shot.deep)
-    if (const std::optional<double> z = middleOf(file, shot.opaque.gbuffer))
+    if (const std::optional<double> z = middleOf(layerSpanOf(file, shot.opaque.gbuffer)))
       systems.push_back({file->path(), *z, {}, nullptr, &file});
   std::stable_sort(systems.begin(), systems.end(),
                    [](const LayerSystem& a, const LayerSystem& b) { return a.z > b.z; });

@@ -1,139 +1,160 @@
 #include "composite/study/fit_weight.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "composite/over.h"
 #include "gbuffer/weight_text.h"
-#include "shaders/probe.h"
 
 namespace pellucid {
-WeightProbes::WeightProbes(const GBuffer& gbuffer, std::size_t most) : gbuffer_(gbuffer), cell_(1) {
-  while (gbuffer.beauty.size() / (static_cast<std::size_t>(cell_) * static_cast<std::size_t>(cell_)) > most) ++cell_;
-}
-
-void WeightProbes::add(const FragmentLists& tile) {
-  for (int y = 0; y < tile.window.height(); ++y)
-    for (int x = 0; x < tile.window.width(); ++x) {
-      const int px = tile.window.x0 + x - gbuffer_.data.x0, py = tile.window.y0 + y - gbuffer_.data.y0;
-      if (!shading::isProbe({px, py}, cell_)) continue;
-      const std::size_t pixel =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(tile.window.width()) + static_cast<std::size_t>(x);
-      const glm::vec4 behind = gbuffer_.beauty.at(px, py);
-      if (tile.offsets[pixel] == tile.offsets[pixel + 1] || !std::isfinite(behind.r + behind.g + behind.b)) continue;
-      fragments_.emplace_back(tile.fragments.begin() + static_cast<std::ptrdiff_t>(tile.offsets[pixel]),
-                              tile.fragments.begin() + static_cast<std::ptrdiff_t>(tile.offsets[pixel + 1]));
-      solids_.push_back(tile.solid.at(x, y));
-      backgrounds_.emplace_back(behind);
-    }
-}
-
-// The probes as a picture, the end of its last row empty, and the truth of them.
-struct WeightFitter {
-  FragmentLists lists;
-  std::vector<glm::dvec3> truth;
-  const WeightProbes& probes;
-  int normalisation;
-  WeightFit& fit;
-
-  WeightFitter(const WeightProbes& from, int rule, WeightFit& result) : probes(from), normalisation(rule), fit(result) {
-    constexpr int kWidth = 64;
-    lists.window = {0, 0, kWidth, (static_cast<int>(from.count()) + kWidth - 1) / kWidth};
-    lists.solid = Image<glm::vec4>(lists.window.width(), lists.window.height(), glm::vec4(0, 0, 0, INFINITY));
-    lists.offsets.assign(1, 0);
-    for (std::size_t i = 0; i < from.count(); ++i) {
-      lists.fragments.insert(lists.fragments.end(), from.fragments_[i].begin(), from.fragments_[i].end());
-      lists.offsets.push_back(lists.fragments.size());
-      lists.solid[i] = from.solids_[i];
-    }
-    lists.offsets.resize(lists.solid.size() + 1, lists.fragments.size());
-    Veil veil(lists.window.width(), lists.window.height());
-    compositeSorted(lists, lists.window, veil);
-    truth = shown(veil);
-  }
-  std::vector<glm::dvec3> shown(const Veil& veil) const {
-    std::vector<glm::dvec3> pictures;
-    for (std::size_t i = 0; i < probes.count(); ++i)
-      pictures.push_back(glm::dvec3(veil.light[i]) +
-                         glm::dvec3(veil.transmission[i]) * glm::dvec3(probes.backgrounds_[i]));
-    return pictures;
-  }
-  double attempt(const shading::WeightSettings& weight) {
-    Veil veil(lists.window.width(), lists.window.height());
-    compositeBy(*chooseMethod("weighted"), {0, weight, normalisation}, lists, lists.window, veil);
-    const std::vector<glm::dvec3> got = shown(veil);
-    double sum = 0;
-    for (std::size_t i = 0; i < got.size(); ++i) {
-      const glm::dvec3 d = glm::abs(got[i] - truth[i]);
-      sum += d.r + d.g + d.b;
-    }
-    const double error = sum / (3.0 * static_cast<double>(got.size()));
-    fit.tried.emplace_back(weightText(weight), error);
-    if (fit.probes == 0 || error < fit.meanError) {
-      fit.meanError = error;
-      fit.weight = weight;
-    }
-    fit.probes = got.size();
-    return error;
-  }
-};
-
 namespace {
 
-// As given, and over ranges that the probes' depths suggest.
-//   low, high  nearest and farthest layer, metres
-void tryRow(const DepthWeight& row, const shading::WeightSettings& given, float low, float high, WeightFitter& fitter) {
+constexpr std::size_t kKept = 6;     // of the rough tries
+constexpr std::size_t kRefined = 3;  // of those, one of a kind
+
+struct Try {
+  shading::WeightSettings weight;
+  double error = 0.0;
+};
+
+bool isBetter(const Try& a, const Try& b) {
+  return a.error < b.error;
+}
+
+// As --weight asks for it.
+shading::WeightSettings listed(const DepthWeight& row, const shading::WeightSettings& given, float parameter) {
   shading::WeightSettings weight = given;
   weight.kind = row.kind;
-  fitter.attempt(weight);
-  if (!row.readsRange) return;
-  for (const float nearShare : {0.25f, 0.5f, 0.9f})
-    for (const float farShare : {1.1f, 4.0f, 100.0f}) {
-      weight.rangeNear = low * nearShare;
-      weight.rangeFar = high * farShare;
-      fitter.attempt(weight);
+  weight.exponent = row.parameter ? parameter : given.exponent;
+  if (row.reference != WeightReference::depth) weight.reference = 1.0f;
+  return weight;
+}
+
+// The listed weights; of those with a parameter the whole numbers that a user would name.
+void listRow(const DepthWeight& row, const shading::WeightSettings& given, std::vector<shading::WeightSettings>& all) {
+  if (!row.parameter || row.perMetre) {
+    all.push_back(listed(row, given, 0.01f));  // of WB13 figure 11
+    return;
+  }
+  for (const float parameter : {1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 8.0f, 10.0f, 12.0f, 16.0f, 24.0f, 32.0f})
+    if (parameter >= row.least && parameter <= row.fitMost) all.push_back(listed(row, given, parameter));
+}
+
+// Ranges, parameters and units as far as the depths reach.
+void varyRow(const DepthWeight& row, const shading::WeightSettings& given, const WeighedDepths& depths,
+             std::vector<shading::WeightSettings>& all) {
+  shading::WeightSettings weight = listed(row, given, 1.0f);
+  if (row.readsRange)
+    for (const float nearShare : {0.25f, 0.5f, 0.9f})
+      for (const float farShare : {1.1f, 4.0f, 100.0f}) {
+        weight.rangeNear = depths.nearest * nearShare;
+        weight.rangeFar = depths.farthest * farShare;
+        all.push_back(weight);
+      }
+  if (row.perMetre)
+    for (const float knee : {0.25f, 0.5f, 0.7f, 1.0f, 1.4f, 2.0f, 4.0f}) {
+      weight.exponent = knee / depths.middle;
+      all.push_back(weight);
+    }
+  else if (row.reference == WeightReference::unit)
+    for (const float units : {0.5f, 4.0f, 30.0f, 100.0f, 200.0f}) {
+      weight.reference = depths.middle / units;
+      all.push_back(weight);
+    }
+  else if (row.parameter)
+    for (const float parameter : {0.25f, 0.5f, 1.5f, 7.0f, 20.0f, 28.0f}) {
+      weight.exponent = std::clamp(parameter, row.least, row.fitMost);
+      all.push_back(weight);
     }
 }
 
-// Steps that are closer where the parameter is small, then closer still around the best of them.
-void tryParameters(const DepthWeight& row, const shading::WeightSettings& given, WeightFitter& fitter) {
-  shading::WeightSettings weight = given;
-  weight.kind = row.kind;
-  float best = 1.0f;
-  double least = INFINITY;
-  const auto tryOne = [&](float parameter) {
-    weight.exponent = parameter;
-    const double error = fitter.attempt(weight);
-    if (error < least) least = error, best = parameter;
-  };
-  for (const float part : {1.0f, 2.0f, 4.0f, 6.0f, 8.0f, 12.0f, 16.0f, 24.0f, 32.0f, 48.0f, 64.0f})
-    tryOne(std::max(row.least, part * row.fitMost / 64.0f));
-  for (float step = 0.25f; step > 0.01f; step *= 0.5f) {
-    const float centre = best;
-    tryOne(std::max(row.least, centre * (1.0f - step)));
-    tryOne(centre * (1.0f + step));
+// The number of a weight that is fitted closely; null where it has none.
+float* numberOf(shading::WeightSettings& weight) {
+  const DepthWeight* row = depthWeightOf(weight.kind);
+  if (row->parameter) return &weight.exponent;
+  if (row->readsRange) return &weight.rangeFar;
+  return row->reference == WeightReference::unit ? &weight.reference : nullptr;
+}
+
+class Fitter {
+ public:
+  explicit Fitter(const WeightError& whole, WeightFit& fit) : whole_(whole), fit_(fit) {}
+
+  Try attempt(const shading::WeightSettings& weight) {
+    const Try made{weight, whole_(weight)};
+    fit_.tried.emplace_back(weightText(weight), made.error);
+    if (fit_.tried.size() == 1 || made.error < fit_.meanError) {
+      fit_.meanError = made.error;
+      fit_.weight = weight;
+    }
+    return made;
   }
+
+  // Steps around the number, each half as long as the one before.
+  void refine(Try best) {
+    if (!numberOf(best.weight)) return;
+    const DepthWeight* row = depthWeightOf(best.weight.kind);
+    for (float step = 0.32f; step > 0.005f; step *= 0.5f) {
+      const Try centre = best;
+      for (const float factor : {1.0f / (1.0f + step), 1.0f + step}) {
+        Try other = centre;
+        float& number = *numberOf(other.weight);
+        number *= factor;
+        if (row->parameter && !row->perMetre) number = std::clamp(number, row->least, row->fitMost);
+        if (row->readsRange && !(other.weight.rangeFar > other.weight.rangeNear)) continue;
+        other = attempt(other.weight);
+        if (isBetter(other, best)) best = other;
+      }
+    }
+  }
+
+ private:
+  const WeightError& whole_;
+  WeightFit& fit_;
+};
+
+std::vector<Try> tried(const std::vector<shading::WeightSettings>& weights, const WeightError& error) {
+  std::vector<Try> all;
+  for (const shading::WeightSettings& weight : weights) all.push_back({weight, error(weight)});
+  std::stable_sort(all.begin(), all.end(), isBetter);
+  return all;
 }
 
 }  // namespace
 
-WeightFit fitWeight(const WeightProbes& probes, const shading::WeightSettings& given, int normalisation) {
+WeighedDepths depthsOf(const std::vector<const FragmentLists*>& lists) {
+  std::vector<float> all;
+  for (const FragmentLists* one : lists)
+    for (const Fragment& fragment : one->fragments) all.push_back(fragment.z);
+  if (all.empty()) return {};
+  std::sort(all.begin(), all.end());
+  return {all.front(), all[all.size() / 2], all.back()};
+}
+
+WeightFit fitWeight(const shading::WeightSettings& given, const WeighedDepths& depths, const WeightError& rough,
+                    const WeightError& whole) {
   WeightFit fit;
   fit.weight = given;
-  if (probes.count() == 0) return fit;
-  WeightFitter fitter(probes, normalisation, fit);
-  float low = fitter.lists.fragments[0].z, high = low;
-  for (const Fragment& fragment : fitter.lists.fragments) {
-    low = std::min(low, fragment.z);
-    high = std::max(high, fragment.z);
+  if (!(depths.nearest > 0.0f)) return fit;
+  Fitter fitter(whole, fit);
+  std::vector<shading::WeightSettings> asListed, varied;
+  for (const DepthWeight& row : kDepthWeights) {
+    if (!row.fitted) continue;
+    listRow(row, given, asListed);
+    varyRow(row, given, depths, varied);
   }
-  for (const DepthWeight& row : kDepthWeights)
-    if (row.fitted && !row.parameter) tryRow(row, given, low, high, fitter);
-  for (const DepthWeight& row : kDepthWeights)
-    if (row.fitted && row.parameter) tryParameters(row, given, fitter);
+  std::vector<Try> best;
+  for (const shading::WeightSettings& weight : asListed) best.push_back(fitter.attempt(weight));
+  const std::vector<Try> likely = tried(varied, rough);
+  for (std::size_t i = 0; i < std::min(kKept, likely.size()); ++i) best.push_back(fitter.attempt(likely[i].weight));
+  std::stable_sort(best.begin(), best.end(), isBetter);
+  std::vector<int> refined;
+  for (const Try& one : best) {
+    if (refined.size() == kRefined) break;
+    if (std::find(refined.begin(), refined.end(), one.weight.kind) != refined.end()) continue;
+    refined.push_back(one.weight.kind);
+    fitter.refine(one);
+  }
   std::stable_sort(fit.tried.begin(), fit.tried.end(),
                    [](const auto& a, const auto& b) { return a.second < b.second; });
   return fit;

@@ -1,42 +1,38 @@
 // --weight auto: the weight that errs least against the sorted truth, found on probe pixels.
 #pragma once
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "composite/methods/method.h"
 #include "gbuffer/fragments.h"
-#include "gbuffer/gbuffer.h"
+#include "shaders/weights.h"
 
 namespace pellucid {
 
-// Pixels spread evenly over the picture, one from each cell of a grid: their lists and what lies behind them.
-class WeightProbes {
- public:
-  //   most  probes kept, about
-  WeightProbes(const GBuffer& gbuffer, std::size_t most);
-  void add(const FragmentLists& tile);
-  std::size_t count() const { return backgrounds_.size(); }
-  int cell() const { return cell_; }  // edge in pixels; see shaders/shared/probe.glsl
-
- private:
-  friend struct WeightFitter;
-  const GBuffer& gbuffer_;
-  int cell_;
-  std::vector<std::vector<Fragment>> fragments_;
-  std::vector<glm::vec4> solids_;
-  std::vector<glm::vec3> backgrounds_;
+// Of the layers that are weighed, planar metres: what the fit tries is told by them alone, so that it finds the same in
+// any unit.
+struct WeighedDepths {
+  float nearest = 0.0f, middle = 0.0f, farthest = 0.0f;
 };
+// Nothing where there is no layer.
+WeighedDepths depthsOf(const std::vector<const FragmentLists*>& lists);
+
+// Mean error of the picture that a weight draws.
+using WeightError = std::function<double(const shading::WeightSettings& weight)>;
 
 struct WeightFit {
-  shading::WeightSettings weight;
-  double meanError = 0;  // on the probes, of the chosen weight
-  std::size_t probes = 0;
-  std::vector<std::pair<std::string, double>> tried;  // weight and mean error on the probes, the best first
+  shading::WeightSettings weight{};
+  double meanError = 0;                               // on the probes, of the chosen weight
+  std::vector<std::pair<std::string, double>> tried;  // weight and mean error on all probes, the best first
 };
 
-// Tries every listed weight, powers of depth, and for eqs. 5 and 10 ranges that the probes' depths suggest; then
-// refines the power. No probe with layers: the weight given.
-//   given  range and kind that count when nothing can be learnt
-WeightFit fitWeight(const WeightProbes& probes, const shading::WeightSettings& given, int normalisation);
+// Tries every weight of the table as --weight asks for it; then ranges, parameters and units that the depths suggest,
+// on some probes; then the best of those on all, and what lies around them. No layer: the weight given.
+//   given   the range, and the reference of powers
+//   rough   error on some probes
+//   whole   error on all of them
+WeightFit fitWeight(const shading::WeightSettings& given, const WeighedDepths& depths, const WeightError& rough,
+                    const WeightError& whole);
 
 }  // namespace pellucid

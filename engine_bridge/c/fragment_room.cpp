@@ -139,7 +139,8 @@ pld_status FragmentRoom::fold(pld_stage stage, GLuint frame, int width, int heig
   const Program& fold = folds_[stage];
   device_.use(fold);
   gl.Uniform1i(fold.place(gl, "rowLength"), width_);
-  gl.Uniform4f(fold.place(gl, "weight"), numbers.weight_near, numbers.weight_far, numbers.weight_exponent, 0.0f);
+  gl.Uniform4f(fold.place(gl, "weight"), numbers.weight_near, numbers.weight_far, numbers.weight_exponent,
+               referenceOf(numbers));
   device_.drawEverywhere();
   GLuint came = 0;
   gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(came), &came);

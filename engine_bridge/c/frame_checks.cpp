@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine_bridge/c/textures.h"
+#include "shaders/weights.h"
 
 namespace pellucid::c {
 namespace {
@@ -66,7 +67,9 @@ pld_status checkNumber(Device& device, const char* call, const Number& number) {
 pld_status checkNumbersAlone(Device& device, const char* call, const pld_frame& frame, uint32_t fields) {
   const Permutation& p = device.permutation;
   const bool distance = p.has(PLD_FEATURE_REFRACTION) && frame.refract == PLD_REFRACT_AT_DISTANCE;
-  const bool diffuses = p.has(PLD_FEATURE_DIFFUSION), power = p.weight == PLD_WEIGHT_BY_POWER;
+  const bool diffuses = p.has(PLD_FEATURE_DIFFUSION);
+  const DepthWeight* weight = depthWeightOf(static_cast<int>(p.weight));
+  const bool exponent = weight && weight->parameter, reference = weight && weight->reference != WeightReference::none;
   // An orthographic lens is in pixels a metre.
   const bool lens = names(fields, PLD_FIXED_LENS) && isOrthographic(frame.projection);
   const Number numbers[] = {
@@ -74,7 +77,8 @@ pld_status checkNumbersAlone(Device& device, const char* call, const pld_frame& 
       {"pre_exposure", PLD_FIXED_EXPOSURE, frame.pre_exposure, Range::positive, true, false},
       {"weight_near", PLD_FIXED_WEIGHT, frame.weight_near, Range::positive, true, false},
       {"weight_far", PLD_FIXED_WEIGHT, frame.weight_far, Range::positive, true, false},
-      {"weight_exponent", PLD_FIXED_WEIGHT, frame.weight_exponent, Range::any, power, false},
+      {"weight_exponent", PLD_FIXED_WEIGHT, frame.weight_exponent, Range::any, exponent, false},
+      {"weight_reference", PLD_FIXED_WEIGHT, frame.weight_reference, Range::notNegative, reference, false},
       {"refract_distance", PLD_FIXED_REFRACTION, frame.refract_distance, Range::positive, distance, true},
       {"diffusion_k0", PLD_FIXED_DIFFUSION, frame.diffusion_k0, Range::notNegative, diffuses, true},
       {"diffusion_k1", PLD_FIXED_DIFFUSION, frame.diffusion_k1, Range::positive, diffuses, true}};
@@ -97,6 +101,7 @@ const char* changedField(const Permutation& permutation, const pld_frame& frame)
                  {PLD_FIXED_WEIGHT, frame.weight_near, fixed.weight_near, "weight_near"},
                  {PLD_FIXED_WEIGHT, frame.weight_far, fixed.weight_far, "weight_far"},
                  {PLD_FIXED_WEIGHT, frame.weight_exponent, fixed.weight_exponent, "weight_exponent"},
+                 {PLD_FIXED_WEIGHT, frame.weight_reference, fixed.weight_reference, "weight_reference"},
                  {PLD_FIXED_REFRACTION, frame.refract_distance, fixed.refract_distance, "refract_distance"},
                  {PLD_FIXED_DIFFUSION, frame.diffusion_k0, fixed.diffusion_k0, "diffusion_k0"},
                  {PLD_FIXED_DIFFUSION, frame.diffusion_k1, fixed.diffusion_k1, "diffusion_k1"}};

@@ -86,9 +86,10 @@ pld_status checkInfo(const pld_create_info& info) {
   return PLD_OK;
 }
 
-// Of 0.1 it ended before occlusion_texture.
+// Of 0.1 it ended before occlusion_texture, of 0.5 before weight_reference.
 pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, pld_frame& whole) {
-  if (frame.struct_size != offsetof(pld_frame, occlusion_texture) && frame.struct_size != sizeof(pld_frame))
+  if (frame.struct_size != offsetof(pld_frame, occlusion_texture) &&
+      frame.struct_size != offsetof(pld_frame, weight_reference) && frame.struct_size != sizeof(pld_frame))
     return pass->device.fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call,
                              frame.struct_size, sizeof(pld_frame));
   std::memcpy(&whole, &frame, frame.struct_size);

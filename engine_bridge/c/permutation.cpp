@@ -26,6 +26,7 @@ void defineFixed(const Permutation& p, pld_stage stage, std::vector<std::string>
     defines.push_back(literal("RANGE_NEAR", frame.weight_near));
     defines.push_back(literal("RANGE_FAR", frame.weight_far));
     defines.push_back(literal("EXPONENT", frame.weight_exponent));
+    defines.push_back(literal("REFERENCE", referenceOf(frame)));
   }
   if (has(PLD_FIXED_REFRACTION)) {
     defines.push_back("REFRACT " + std::to_string(static_cast<int>(frame.refract)));
@@ -81,6 +82,10 @@ bool isPerspective(const float* p) {
 }
 bool isOrthographic(const float* p) {
   return p[3] == 0.0f && p[7] == 0.0f && p[11] == 0.0f && p[15] == 1.0f;
+}
+
+float referenceOf(const pld_frame& frame) {
+  return frame.weight_reference > 0.0f ? frame.weight_reference : 1.0f;
 }
 
 Focal focalOf(const pld_frame& frame, int pixelsATexel) {

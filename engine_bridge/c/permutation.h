@@ -55,6 +55,8 @@ struct Focal {
 };
 //   pixelsATexel  of PLD_STAGE_LOW, else 1
 Focal focalOf(const pld_frame& frame, int pixelsATexel);
+// pld_frame.weight_reference, or what stands for 0. Metres
+float referenceOf(const pld_frame& frame);
 
 // Empty when the parts go together, else what does not: a sentence.
 std::string conflictOf(const Permutation& permutation);

@@ -232,6 +232,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   frame_.weightNear = settings.weight.rangeNear;
   frame_.weightFar = settings.weight.rangeFar;
   frame_.weightExponent = settings.weight.exponent;
+  frame_.weightReference = settings.weight.reference;
   frame_.depthFactor = 1.0f + gbuffer_->depthPrecision;
   frame_.lightCount = lights_;
   frame_.orthographic = camera_.orthographic ? 1 : 0;

@@ -25,6 +25,7 @@ gl::FrameBlock frameOf(const shading::WeightSettings& weight, int width) {
   frame.weightNear = weight.rangeNear;
   frame.weightFar = weight.rangeFar;
   frame.weightExponent = weight.exponent;
+  frame.weightReference = weight.reference;
   frame.bandWidth = width;
   return frame;
 }

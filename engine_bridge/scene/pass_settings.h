@@ -88,7 +88,7 @@ struct ResidencySettings {
 // How layers are summed; lists do not read it.
 struct SumsSettings {
   SumsTier tier = SumsTier::float32;
-  shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f};
+  shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f, 1.0f};
   int normalisation = shading::PLD_NORMALISE_SPECTRAL;
 };
 

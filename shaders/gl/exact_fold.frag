@@ -15,7 +15,7 @@
 #include "shared/exact_sums.glsl"
 
 uniform int rowLength;
-uniform vec4 weight;  // range near, far in metres; exponent
+uniform vec4 weight;  // range near, far in metres; exponent; reference in metres
 
 // Puts this fragment's share of every plane into the outputs.
 //   frontZ  nearest of the pixel's list
@@ -31,6 +31,7 @@ void writeOne(uint place, float frontZ) {
   settings.rangeNear = weight.x;
   settings.rangeFar = weight.y;
   settings.exponent = weight.z;
+  settings.reference = weight.w;
 #if defined(STAGE_RIMS)
   writeRim(layer, layer.radiance, pldOffsets[place].xy, settings);
 #elif defined(FRONT_TAIL)

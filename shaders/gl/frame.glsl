@@ -19,6 +19,7 @@ layout(std140, binding = 0) uniform Frame {
   ivec2 origin;          // of the pass's pixel 0, 0 in the data window
   mat4 volumeOfParticles;  // view space to texels of the light volume, centres at +0.5
   ivec4 texelsOfParticles; // of one light
+  vec4 weightReference;    // metres; unused
 };
 
 // Row 0 is the top row: the pass sets the clip origin to the upper left.

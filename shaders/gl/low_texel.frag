@@ -16,6 +16,7 @@ void main() {
   settings.rangeNear = 0.1f;
   settings.rangeFar = 1.0f;
   settings.exponent = 0.0f;
+  settings.reference = 1.0f;
   OitSums sums = sumsAt(at);
   LowTexel texel = lowTexelOf(sums, vec4(0.0f, 0.0f, 0.0f, nothing), texelFetch(nearestZ, at, 0).r, settings);
   radiance = vec4(texel.radiance, texel.weight);

@@ -27,6 +27,7 @@ void main() {
   settings.rangeNear = weightNear;
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
+  settings.reference = weightReference.x;
   writeSums(layer, settings);
 #ifdef SCATTER
   Scatter scatter;

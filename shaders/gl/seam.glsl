@@ -33,6 +33,7 @@ PLD_FRAME_LAYOUT uniform PldFrame {
   vec4 pldWeight;      // range near, far in metres; exponent; pixels of a row of the largest picture
   vec4 pldRefraction;  // PLD_REFRACT_*; metres (at a distance); focal length in x and y, pixels
   vec4 pldDiffusion;   // k0, k1 metres; width and height of the picture
+  vec4 pldReference;   // of the weight, metres; unused
 };
 // What pld_fix() fixed is a constant; the rest is read from the block.
 #ifndef UNITS
@@ -48,6 +49,7 @@ PLD_FRAME_LAYOUT uniform PldFrame {
 #define RANGE_NEAR pldWeight.x
 #define RANGE_FAR pldWeight.y
 #define EXPONENT pldWeight.z
+#define REFERENCE pldReference.x
 #endif
 #ifndef REFRACT
 #define REFRACT int(pldRefraction.x)
@@ -118,6 +120,7 @@ WeightSettings seamWeight() {
   settings.rangeNear = RANGE_NEAR;
   settings.rangeFar = RANGE_FAR;
   settings.exponent = EXPONENT;
+  settings.reference = REFERENCE;
   return settings;
 }
 

@@ -137,6 +137,7 @@ void main() {
   settings.rangeNear = weightNear;
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
+  settings.reference = weightReference.x;
 #endif
 #if defined(OUTPUT_LIST) || defined(OUTPUT_PUBLISHED)
   Scatter scatter;

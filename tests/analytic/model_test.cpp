@@ -194,6 +194,33 @@ TEST(Weight, DocumentedValues) {
     EXPECT_NEAR(ours(shading::PLD_WEIGHT_EQ5) / eq5, 1, 1e-4) << z;
     EXPECT_NEAR(ours(shading::PLD_WEIGHT_POWER) / std::pow(d, -3), 1, 1e-5) << z;
     EXPECT_EQ(ours(shading::PLD_WEIGHT_UNIFORM), 1.0);
+    EXPECT_NEAR(ours(shading::PLD_WEIGHT_FIG1) * std::pow(d + 5, 2), 1, 1e-5) << z;
+    EXPECT_NEAR(ours(shading::PLD_WEIGHT_FIG6) / (.4 * .4 * std::pow(d, -6)), 1, 1e-5) << z;
+    EXPECT_NEAR(ours(shading::PLD_WEIGHT_FIG10) / (10 / (1 + 10 * std::pow(3 * d, 5))), 1, 1e-5) << z;
+    EXPECT_NEAR(ours(shading::PLD_WEIGHT_LINEAR), std::max((500 - d) / (500 - .1), 0.0) + 1e-3, 1e-6) << z;
+  }
+}
+
+// In another unit every weight that has a reference is the same where the reference grows with it; a power has the same
+// ratios over any reference.
+TEST(Weight, HasNoScaleOverItsReference) {
+  for (const DepthWeight& row : kDepthWeights) {
+    if (row.reference == WeightReference::none) continue;
+    for (const float scale : {1e-3f, 0.5f, 1e3f})
+      for (const float exponent : {0.5f, 3.0f, 32.0f})
+        for (float z = 1.0f; z < 6.0f; z *= 1.3f) {
+          shading::WeightSettings here = weightOf(row.kind, 0.1f, 1000.0f, exponent), there = here;
+          there.reference = scale;
+          const auto ratio = [&](const shading::WeightSettings& weight, float unit) {
+            return static_cast<double>(shading::depthWeight(weight, unit * z)) /
+                   static_cast<double>(shading::depthWeight(weight, unit * 1.0f));
+          };
+          // A rounding of depth, to the power of 32.
+          EXPECT_NEAR(ratio(there, scale) / ratio(here, 1.0f), 1.0, 1e-5) << row.name << " at " << z << " x " << scale;
+          there.reference = 0.5f;
+          if (row.reference == WeightReference::unit) continue;
+          EXPECT_NEAR(ratio(there, 1.0f) / ratio(here, 1.0f), 1.0, 1e-5) << row.name << " at " << z;
+        }
   }
 }
 

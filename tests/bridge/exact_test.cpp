@@ -55,7 +55,7 @@ uint32_t featuresOf(const Case& one) {
 }
 
 shading::WeightSettings weightOf(const Case& one) {
-  return {static_cast<int>(one.weight), 0.1f, 100.0f, 3.0f};
+  return {static_cast<int>(one.weight), 0.1f, 100.0f, 3.0f, 1.0f};
 }
 
 struct Shot {

@@ -69,6 +69,7 @@ std::vector<float> drawn(const Case& one, uint32_t fixed) {
   frame.metres_per_unit = 0.37f;
   frame.pre_exposure = 1.3f;
   frame.weight_exponent = 2.0907593f;
+  frame.weight_reference = 0.71f;
   frame.weight_near = 0.123f;
   frame.weight_far = 77.7f;
   frame.refract = one.refract;
@@ -188,6 +189,7 @@ TEST(BridgeFix, FramesKeepToWhatIsFixed) {
   begins([](auto& f) { f.weight_near = 0.2f; }, PLD_ERROR_ARGUMENT, "weight_near");
   begins([](auto& f) { f.weight_far = 50; }, PLD_ERROR_ARGUMENT, "weight_far");
   begins([](auto& f) { f.weight_exponent = 2; }, PLD_ERROR_ARGUMENT, "weight_exponent");
+  begins([](auto& f) { f.weight_reference = 2; }, PLD_ERROR_ARGUMENT, "weight_reference");
   begins([](auto& f) { f.refract = PLD_REFRACT_NOTHING; }, PLD_ERROR_ARGUMENT, "refract");
   begins([](auto& f) { f.refract_distance = 1; }, PLD_ERROR_ARGUMENT, "refract_distance");
   begins([](auto& f) { f.diffusion_k0 = 0.1f; }, PLD_ERROR_ARGUMENT, "diffusion_k0");

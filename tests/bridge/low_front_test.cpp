@@ -14,7 +14,7 @@ namespace pellucid::test {
 namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f};
+constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
 
 FragmentLists listsOf(const Window& window, Random& random, bool coloured, std::uint32_t most,
                       const Image<float>& opaqueZ) {

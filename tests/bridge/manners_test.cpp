@@ -268,7 +268,8 @@ TEST(BridgeManners, NumbersThatAreNotReadMayBeZeroAndAreCalledByTheirNames) {
        PLD_REFRACT_AT_DISTANCE},
       {&pld_frame::diffusion_k0, "diffusion_k0", PLD_FEATURE_DIFFUSION, PLD_WEIGHT_BY_EQ5, PLD_REFRACT_NOTHING},
       {&pld_frame::diffusion_k1, "diffusion_k1", PLD_FEATURE_DIFFUSION, PLD_WEIGHT_BY_EQ5, PLD_REFRACT_NOTHING},
-      {&pld_frame::weight_exponent, "weight_exponent", 0, PLD_WEIGHT_BY_POWER, PLD_REFRACT_NOTHING}};
+      {&pld_frame::weight_exponent, "weight_exponent", 0, PLD_WEIGHT_BY_POWER, PLD_REFRACT_NOTHING},
+      {&pld_frame::weight_reference, "weight_reference", 0, PLD_WEIGHT_BY_POWER, PLD_REFRACT_NOTHING}};
   GlContext context;
   Host host(8, 8);
   for (const uint32_t flags : kBoth)

@@ -17,7 +17,7 @@ namespace pellucid::test {
 namespace {
 
 constexpr int kWidth = 120, kHeight = 90;
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f};
+constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
 
 struct Wanted {
   bool coloured = true, light = true, refracts = false, diffuses = false, disperses = false, solids = false;

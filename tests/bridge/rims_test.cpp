@@ -19,7 +19,7 @@ namespace pellucid::test {
 namespace {
 
 constexpr int kWidth = 90, kHeight = 70, kLayers = 5;
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f};
+constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
 
 // Leaves before a wall and before each other: five fragments in a pixel, most of them rims.
 struct Leaves {

@@ -43,7 +43,7 @@ OrderShot load(const std::string& folder, const std::string& name) {
     shot.scene = std::move(stage.scene);
     shot.gbuffer = std::move(stage.gbuffer);
     shot.camera = stage.camera;
-    shot.settings.weight = {shading::PLD_WEIGHT_POWER, 0.1f, 1000.0f, 3.0f};
+    shot.settings.weight = {shading::PLD_WEIGHT_POWER, 0.1f, 1000.0f, 3.0f, 1.0f};
   } else {
     shot.gbuffer = readOpaque(folder + "/" + name + ".exr", {}).gbuffer;
     shot.scene = loadScene({folder + "/" + name + ".glb"}, {});

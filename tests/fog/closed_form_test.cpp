@@ -48,7 +48,7 @@ TEST(Fog, UniformFogUnderAmbientLightIsTheClosedForm) {
             settings.steps = steps;
             settings.order = order;
             const Picture picture =
-                stage.picture(stage.sums(stage.fog(settings, ambient), {weight, 0.1f, 1000.0f, 3.0f}));
+                stage.picture(stage.sums(stage.fog(settings, ambient), {weight, 0.1f, 1000.0f, 3.0f, 1.0f}));
             for (int y = 0; y < 3; ++y)
               for (int x = 0; x < 4; ++x) {
                 const double metres = static_cast<double>(wall) / -stage.way(x, y).z,

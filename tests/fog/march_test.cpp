@@ -310,7 +310,7 @@ TEST(Fog, RunsDependOnNoOrder) {
 // exact instead, which is why it is the default.
 TEST(Fog, TheSumsOfARayAreFreeOfOrder) {
   shading::FogSums forward = shading::noFog(), backward = shading::noFog();
-  const shading::WeightSettings weight{shading::PLD_WEIGHT_EQ7Z, 0.1f, 100.0f, 3.0f};
+  const shading::WeightSettings weight{shading::PLD_WEIGHT_EQ7Z, 0.1f, 100.0f, 3.0f, 1.0f};
   constexpr int kSteps = 64;
   const auto add = [&](shading::FogSums sums, int i) {
     const float z = 0.5f + 0.3f * static_cast<float>(i), light = i > 20 && i < 30 ? 2.0f : 0.1f;

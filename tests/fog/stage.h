@@ -46,7 +46,7 @@ struct FogStage : Stage {
   }
 
   OitPlanes sums(const Fog& fog,
-                 const shading::WeightSettings& weight = {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f}) const {
+                 const shading::WeightSettings& weight = {shading::PLD_WEIGHT_EQ5, 0.1f, 1000.0f, 3.0f, 1.0f}) const {
     OitPlanes planes = emptyPlanes(gbuffer.display, gbuffer.data);
     planes.info.weight = weight;
     addFog(fog, gbuffer, {0.5, 0.5}, planes);

@@ -27,7 +27,7 @@ OitPlanes somePlanes(unsigned seed) {
     planes.solid[i] = glm::vec4(d(random), d(random), d(random), 1.0f + d(random));
   }
   planes.info.method = "weighted";
-  planes.info.weight = {shading::PLD_WEIGHT_POWER, 0.1f, 333.3333f, 1.0f / 3.0f};
+  planes.info.weight = {shading::PLD_WEIGHT_POWER, 0.1f, 333.3333f, 1.0f / 3.0f, 1.0f};
   planes.info.solidHash = "0123abcd";
   planes.camera.viewFromWorld[3] = glm::dvec4(1.0 / 3.0, -2e7 / 7.0, 1e-9, 1.0);
   planes.camera.focal = {16.0 / 9.0, 3.1};
@@ -187,6 +187,7 @@ TEST(Planes, OtherFilesAreRefused) {
   const ExrDocument document = readExr(folder.path("planes.exr"));
   for (const auto& [attribute, value] : std::map<std::string, std::string>{{"pellucid:weight", "eq99 1 2 3"},
                                                                            {"pellucid:weight", "eq5 1 2"},
+                                                                           {"pellucid:weight", "power 1 2 3 0"},
                                                                            {"pellucid:camera", "1 2 3"},
                                                                            {"pellucid:normalisation", "both"}}) {
     std::map<int, ExrPartEdit> edits;

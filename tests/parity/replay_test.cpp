@@ -123,7 +123,7 @@ void expectParity(bool denormals) {
   for (int kind = 0; depthWeightOf(kind); ++kind)
     for (const int normalisation : {shading::PLD_NORMALISE_SPECTRAL, shading::PLD_NORMALISE_PUBLISHED}) {
       const FragmentLists lists = randomLists(static_cast<std::uint64_t>(kind * 2 + normalisation), denormals);
-      const shading::WeightSettings weight{kind, 0.1f, 1000.0f, 2.5f};
+      const shading::WeightSettings weight{kind, 0.1f, 1000.0f, 2.5f, 1.0f};
       const OitPlanes cpu = foldedHere(lists, weight, normalisation);
       const OitPlanes gl = replayFragments(context, lists, weight, normalisation);
       const Difference difference = compare(cpu, gl);
@@ -160,7 +160,7 @@ TEST(Accumulate, ReplayIsInListOrder) {
   lists.fragments = {large, small, small, small, small, large};
   lists.offsets = {0, 3, 6};
   lists.solid = Image<glm::vec4>(2, 1, glm::vec4(0, 0, 0, kNothing));
-  const shading::WeightSettings weight{shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 3.0f};
+  const shading::WeightSettings weight{shading::PLD_WEIGHT_UNIFORM, 0.1f, 1000.0f, 3.0f, 1.0f};
   const OitPlanes planes = replayFragments(context, lists, weight, shading::PLD_NORMALISE_SPECTRAL);
   EXPECT_EQ(planes.light[0].r, 16777216.0f);
   EXPECT_EQ(planes.light[1].r, 16777218.0f);

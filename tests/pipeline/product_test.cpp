@@ -72,7 +72,7 @@ const Feature kFeatures[] = {
     {"fitted weight", [](Request& r) { r.sums.fitWeight = true; }},
     {"a weight",
      [](Request& r) {
-       r.sums.weight = shading::WeightSettings{shading::PLD_WEIGHT_EQ7, 0.1f, 1000.0f, 3.0f};
+       r.sums.weight = shading::WeightSettings{shading::PLD_WEIGHT_EQ7, 0.1f, 1000.0f, 3.0f, 1.0f};
      }},
     {"a normalisation", [](Request& r) { r.sums.normalisation = shading::PLD_NORMALISE_PUBLISHED; }},
     {"self-modulation", [](Request& r) { r.sums.selfModulation = true; }},

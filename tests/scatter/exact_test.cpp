@@ -13,7 +13,7 @@
 namespace pellucid::test {
 namespace {
 
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_POWER, 0.1f, 1000.0f, 3.0f};
+constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_POWER, 0.1f, 1000.0f, 3.0f, 1.0f};
 
 const Image<glm::vec4>* const* sumsOf(const OitPlanes& planes, const Image<glm::vec4>* (&list)[7]) {
   list[0] = &planes.radiance, list[1] = &planes.weight, list[2] = &planes.opacity, list[3] = &planes.depth;

@@ -53,7 +53,7 @@ TEST(ScatterGl, ReplayedFragmentsGiveTheBitsOfTheFold) {
     }
     lists.offsets.push_back(lists.fragments.size());
   }
-  const shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f};
+  const shading::WeightSettings weight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
   GlContext context;
   const OitPlanes gl = replayFragments(context, lists, weight, shading::PLD_NORMALISE_SPECTRAL);
   OitPlanes cpu = emptyPlanes(lists.window, lists.window);

@@ -15,7 +15,7 @@
 namespace pellucid::test {
 namespace {
 
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f};
+constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
 
 // All finite halves from 0 up, in order, from their definition.
 std::vector<float> halves() {

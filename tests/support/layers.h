@@ -74,6 +74,7 @@ inline shading::WeightSettings weightOf(int kind, float rangeNear = 0.1f, float 
   settings.rangeNear = rangeNear;
   settings.rangeFar = rangeFar;
   settings.exponent = exponent;
+  settings.reference = 1.0f;
   return settings;
 }
 

@@ -19,11 +19,12 @@
 
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR                                                                          \
-  5 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
+  6 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
        rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,    \
        the exact tier; refraction and diffusion without PLD_FEATURE_LIGHT keep no light that adds, \
        which is implied for hosts of before. 0.5: PLD_FLAG_VALIDATE, pld_create_info.message; what \
        could be misused in silence is refused, and to hosts of before said as a warning.           \
+       0.6: pld_frame.weight_reference.                                                            \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -132,7 +133,7 @@ typedef PLD_ENUM(pld_weight){PLD_WEIGHT_BY_EQ5 = 0, /* McGuire and Mara 2017, eq
                              PLD_WEIGHT_BY_EQ8 = 2,   PLD_WEIGHT_BY_EQ9 = 3,  PLD_WEIGHT_BY_EQ10 = 4,
                              PLD_WEIGHT_BY_EQ7Z = 5, /* the same without their second factor of alpha */
                              PLD_WEIGHT_BY_EQ8Z = 6,  PLD_WEIGHT_BY_EQ9Z = 7, PLD_WEIGHT_BY_EQ10Z = 8,
-                             PLD_WEIGHT_BY_POWER = 9, /* z to the power of -weight_exponent */
+                             PLD_WEIGHT_BY_POWER = 9, /* z over weight_reference to the power of -weight_exponent */
                              PLD_WEIGHT_BY_NONE = 10} pld_weight;
 
 typedef PLD_ENUM(pld_depth){
@@ -189,8 +190,8 @@ typedef PLD_ENUM(pld_occlusion){
 } pld_occlusion;
 
 /* Numbers that a pass does not read - refract_distance but of PLD_REFRACT_AT_DISTANCE, diffusion_k0 and _k1 without
-   PLD_FEATURE_DIFFUSION, weight_exponent but of PLD_WEIGHT_BY_POWER - may have any value, 0 too, but NaN and
-   infinity. */
+   PLD_FEATURE_DIFFUSION, weight_exponent and weight_reference of weights that read none - may have any value, 0
+   too, but NaN and infinity. */
 typedef struct pld_frame {
   uint32_t struct_size;    /* sizeof(pld_frame) */
   uint32_t colour_texture; /* lit opaque picture, scene-linear, premultiplied; read by pld_resolve() */
@@ -201,7 +202,7 @@ typedef struct pld_frame {
   float pre_exposure;    /* what colour_texture carries already; the seam multiplies radiance by it; > 0 */
   float weight_near,
       weight_far;        /* metres, 0 < near < far: range of eqs. 5 and 10, from the camera, not from the frame */
-  float weight_exponent; /* of PLD_WEIGHT_BY_POWER */
+  float weight_exponent; /* of PLD_WEIGHT_BY_POWER; the number behind the name of others that take one */
   pld_refract refract;
   float refract_distance;     /* metres, > 0; PLD_REFRACT_AT_DISTANCE */
   float diffusion_k0;         /* metres, >= 0; 0.3 as in the papers' pictures */
@@ -210,13 +211,18 @@ typedef struct pld_frame {
                                  1 open */
   pld_occlusion occlusion;
   int32_t low_factor; /* PLD_FEATURE_LOW_RESOLUTION: 2, 4 or 8 pixels a texel; width and height are multiples of it */
+  float weight_reference; /* metres, >= 0. PLD_WEIGHT_BY_POWER: where a layer weighs 1; take a distance at which the
+                             scene's transparent things begin, from camera and scene, not from the frame. The picture
+                             is the same for any, as long as weights stay in 2^-86 to 2^40 (in halves 2^-24 to 2^16):
+                             a power then is the same picture in any unit. Eqs. 7 to 9: the unit of their constants. 0:
+                             1 m, as hosts of before have it. 0.5 ended before weight_reference */
 } pld_frame;
 
 /* Fields of pld_frame that no frame changes. */
 typedef PLD_ENUM(pld_fixed){
     PLD_FIXED_UNITS = 1,       /* metres_per_unit */
     PLD_FIXED_EXPOSURE = 2,    /* pre_exposure */
-    PLD_FIXED_WEIGHT = 4,      /* weight_near, weight_far, weight_exponent */
+    PLD_FIXED_WEIGHT = 4,      /* weight_near, weight_far, weight_exponent, weight_reference */
     PLD_FIXED_REFRACTION = 8,  /* refract, refract_distance */
     PLD_FIXED_DIFFUSION = 16,  /* diffusion_k0, diffusion_k1 */
     PLD_FIXED_PROJECTION = 32, /* whether projection is perspective or orthographic; its numbers may change */

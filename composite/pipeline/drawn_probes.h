@@ -1,0 +1,53 @@
+// Probe pixels of the picture that a plan draws, with one weight after another, and the truth of them.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "composite/fog.h"
+#include "composite/low_resolution.h"
+#include "composite/pipeline/painter.h"
+#include "composite/probe_lists.h"
+#include "composite/study/fit_weight.h"
+
+namespace pellucid {
+
+// What is drawn is what is probed: fog as the plan's sums or lists have it, layers at low resolution, the tier's
+// numbers, and the mean of jittered passes with their footprint. Only --systems is probed as one system, and a deep
+// picture as the flat one that it makes.
+class DrawnProbes {
+ public:
+  //   sample  with the light
+  DrawnProbes(const PaintContext& context, const PassSettings& sample);
+  std::size_t count() const { return grid_.places().size(); }
+  WeighedDepths depths() const;
+  // Mean error of the plan's picture, over the probes and channels.
+  double error(const shading::WeightSettings& weight) const { return errorOf(weight, passes_.size()); }
+  // The same of the first pass alone.
+  double roughError(const shading::WeightSettings& weight) const { return errorOf(weight, 1); }
+
+ private:
+  struct Pass {
+    PassSettings sample;
+    int number;                     // among the plan's passes
+    FragmentLists drawn;            // what is weighed; of lists, with the fog between them
+    std::optional<MarchedFog> fog;  // of sums
+    std::optional<LowView> view;    // of sums
+    std::vector<glm::dvec3> truth;  // picture of the probes
+  };
+  Pass passOf(const PassSettings& sample, int number) const;
+  FragmentLists listed(const PassSettings& sample, VolumeRule rule) const;
+  std::vector<glm::dvec3> truthOf(const Pass& pass) const;
+  Veil veilOf(const Pass& pass, const shading::WeightSettings& weight) const;
+  Veil veilOfSums(const Pass& pass, const PassSettings& sample) const;
+  Veil veilOfLists(const Pass& pass, const PassSettings& sample) const;
+  std::vector<glm::dvec3> shown(const Veil& veil) const;
+  double errorOf(const shading::WeightSettings& weight, std::size_t passes) const;
+  bool ofSums() const { return context_.plan.as<PaintSums>() != nullptr; }
+  bool hasLow() const { return context_.plan.lowResolution > 1; }
+
+  PaintContext context_;
+  ProbeGrid grid_;
+  std::vector<Pass> passes_;
+};
+
+}  // namespace pellucid
