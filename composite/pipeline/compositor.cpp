@@ -257,7 +257,7 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
 }
 
 std::vector<std::string> Compositor::write(const std::string& path, const Result& result) const {
-  const std::map<std::string, std::string> attributes{{"pellucid:method", result.plan.method},
+  const std::map<std::string, std::string> attributes{{kMethodAttribute, result.plan.method},
                                                       {kWeightAttribute, weightText(result.plan.pass.weight)}};
   return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,
                    attributes);

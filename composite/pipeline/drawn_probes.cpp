@@ -55,13 +55,14 @@ DrawnProbes::DrawnProbes(const PaintContext& context, const PassSettings& sample
   for (int i = 0; i < probed; ++i) passes_.push_back(passOf(sample, i * context.plan.passes / probed));
 }
 
-DrawnProbes::Pass DrawnProbes::passOf(const PassSettings& sample, int number) const {
+DrawnProbes::Pass DrawnProbes::passOf(const PassSettings& sample, int number) {
   const GBuffer& gbuffer = *context_.picture.gbuffer;
   Pass pass;
   pass.sample = samplePass(sample, number, context_.plan.passes);
   pass.number = number;
   pass.drawn = listed(pass.sample, VolumeRule::midDepth);
   pass.truth = truthOf(pass);
+  if (passes_.empty()) depths_ = depthsIn(pass);
   const Fog* fog = pass.sample.fog.get();
   if (fog && ofSums())
     pass.fog.emplace(*fog, gbuffer, pass.sample.sample, grid_.places(), pass.drawn.solid);
@@ -155,13 +156,11 @@ double DrawnProbes::errorOf(const shading::WeightSettings& weight, std::size_t p
   return sum / (3.0 * static_cast<double>(std::max<std::size_t>(known, 1) * passes));
 }
 
-WeighedDepths DrawnProbes::depths() const {
-  std::vector<const FragmentLists*> lists;
-  for (const Pass& pass : passes_) lists.push_back(&pass.drawn);
-  const WeighedDepths found = depthsOf(lists);
+WeighedDepths DrawnProbes::depthsIn(const Pass& pass) const {
+  const WeighedDepths found = depthsOf(pass.drawn);
   if (found.nearest > 0.0f) return found;
   // Layers of low resolution alone: powers weigh 1 where they begin.
-  const float reference = passes_[0].sample.weight.reference;
+  const float reference = pass.sample.weight.reference;
   return {reference, 2.0f * reference, 4.0f * reference};
 }
 

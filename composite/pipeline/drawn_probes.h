@@ -19,7 +19,7 @@ class DrawnProbes {
   //   sample  with the light
   DrawnProbes(const PaintContext& context, const PassSettings& sample);
   std::size_t count() const { return grid_.places().size(); }
-  WeighedDepths depths() const;
+  WeighedDepths depths() const { return depths_; }
   // Mean error of the plan's picture, over the probes and channels.
   double error(const shading::WeightSettings& weight) const { return errorOf(weight, passes_.size()); }
   // The same of the first pass alone.
@@ -34,7 +34,8 @@ class DrawnProbes {
     std::optional<LowView> view;    // of sums
     std::vector<glm::dvec3> truth;  // picture of the probes
   };
-  Pass passOf(const PassSettings& sample, int number) const;
+  Pass passOf(const PassSettings& sample, int number);
+  WeighedDepths depthsIn(const Pass& pass) const;
   FragmentLists listed(const PassSettings& sample, VolumeRule rule) const;
   std::vector<glm::dvec3> truthOf(const Pass& pass) const;
   Veil veilOf(const Pass& pass, const shading::WeightSettings& weight) const;
@@ -47,6 +48,7 @@ class DrawnProbes {
 
   PaintContext context_;
   ProbeGrid grid_;
+  WeighedDepths depths_;  // of the first pass
   std::vector<Pass> passes_;
 };
 

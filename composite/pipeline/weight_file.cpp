@@ -24,6 +24,12 @@ Request weighedByFile(const Request& request) {
         fmt::format("{}: --weight-from: attribute {}: found '{}', expected what composite and accumulate "
                     "write",
                     path, kWeightAttribute, *text));
+  const std::string made = exrText(path, kMethodAttribute).value_or("");
+  if (const Method* method = methodNamed(made); method && !method->weighs)
+    throw MeaningError(
+        fmt::format("{}: --weight-from: found a picture by {}, whose layers are not weighed, expected one "
+                    "by a method that weighs",
+                    path, made));
   Request weighed = request;
   setWeight(weighed, *weight);
   return weighed;

@@ -5,8 +5,8 @@
 
 namespace pellucid {
 
-// Of files that a weighing method has written: weightText() of its weight.
-inline constexpr const char* kWeightAttribute = "pellucid:weight";
+// Of what composite and accumulate have written: --method, and weightText() of the weight where it weighs.
+inline constexpr const char *kMethodAttribute = "pellucid:method", *kWeightAttribute = "pellucid:weight";
 
 // The request with what the header of SumsRequest::weightFrom says in its place; itself where there is none. Throws
 // InputError for a file that cannot be read, MeaningError for one that says no weight.

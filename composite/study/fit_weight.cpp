@@ -122,10 +122,9 @@ std::vector<Try> tried(const std::vector<shading::WeightSettings>& weights, cons
 
 }  // namespace
 
-WeighedDepths depthsOf(const std::vector<const FragmentLists*>& lists) {
+WeighedDepths depthsOf(const FragmentLists& lists) {
   std::vector<float> all;
-  for (const FragmentLists* one : lists)
-    for (const Fragment& fragment : one->fragments) all.push_back(fragment.z);
+  for (const Fragment& fragment : lists.fragments) all.push_back(fragment.z);
   if (all.empty()) return {};
   std::sort(all.begin(), all.end());
   return {all.front(), all[all.size() / 2], all.back()};

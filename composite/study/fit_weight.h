@@ -16,7 +16,7 @@ struct WeighedDepths {
   float nearest = 0.0f, middle = 0.0f, farthest = 0.0f;
 };
 // Nothing where there is no layer.
-WeighedDepths depthsOf(const std::vector<const FragmentLists*>& lists);
+WeighedDepths depthsOf(const FragmentLists& lists);
 
 // Mean error of the picture that a weight draws.
 using WeightError = std::function<double(const shading::WeightSettings& weight)>;

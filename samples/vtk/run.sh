@@ -8,6 +8,12 @@ mkdir -p "$out"
 "$programs/pellucid_vtk" "$out" --write-scene "$@"
 "$programs/pellucid" composite "$out/wall.exr" "$out/parts.glb" -o "$out/fitted.exr" --method weighted --weight auto --aa 1 \
   2>"$out/fit.txt" >/dev/null || { cat "$out/fit.txt" >&2; exit 1; }
-exponent=$(grep -o 'power:[0-9.]*' "$out/fit.txt" | cut -d: -f2)
-echo "fitted weight: z to the power of -$exponent"
-exec xvfb-run -a -s "-screen 0 1920x1080x24 -noreset" "$programs/pellucid_vtk" "$out" --weight "$exponent:0.5:5000" "$@"
+flags=$(sed -n 's/.*the same again: //p' "$out/fit.txt")
+flag() { sed -n "s/.*$1 \([^ ]*\).*/\1/p" <<<"$flags"; }
+weight=$(flag --weight) range=$(flag --weight-range) reference=$(flag --weight-reference)
+echo "fitted weight: $flags"
+name=${weight%%:*}
+number=${weight#"$name"}
+number=${number:-:3}
+exec xvfb-run -a -s "-screen 0 1920x1080x24 -noreset" "$programs/pellucid_vtk" "$out" \
+  --weight "$name:${number#:}:${range:-0.5:5000}:${reference:-1}" "$@"

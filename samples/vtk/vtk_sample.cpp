@@ -1,7 +1,7 @@
 // VTK 9.1 with Pellucid in place of its translucent pass, beside VTK's own: error against a sorted double-precision
 // `over`, and time a frame.
 //
-//   vtk_sample OUTDIR [--parts N] [--size WxH] [--frames N] [--weight EXPONENT:NEAR:FAR] [--write-scene]
+//   vtk_sample OUTDIR [--parts N] [--size WxH] [--frames N] [--weight NAME:NUMBER:NEAR:FAR:REFERENCE] [--write-scene]
 //              [--processor-time]
 //
 // --processor-time: what a CPU rasteriser takes of the processor, not what passes on the clock; for busy machines, with
@@ -87,7 +87,7 @@ class PellucidPass : public vtkOpenGLRenderPass {
 
   pld_method method = PLD_METHOD_WEIGHTED;
   pld_weight weight = PLD_WEIGHT_BY_EQ5;
-  float weightNear = 0.1f, weightFar = 100.0f, exponent = 3.0f;
+  float weightNear = 0.1f, weightFar = 100.0f, exponent = 3.0f, reference = 1.0f;
   bool bare = false;  // fills the planes with the colour as it is: what the planes cost, without what goes into them
 
   void Render(const vtkRenderState* s) override {
@@ -114,6 +114,7 @@ class PellucidPass : public vtkOpenGLRenderPass {
     host.weight_near = weightNear;
     host.weight_far = weightFar;
     host.weight_exponent = exponent;
+    host.weight_reference = reference;
     host.refract_distance = host.diffusion_k1 = 1.0f;
     // Every frame has these: constants in the shaders.
     if (isNew) check(pld_fix(pass_, &host, PLD_FIXED_UNITS | PLD_FIXED_EXPOSURE | PLD_FIXED_WEIGHT));
@@ -365,11 +366,13 @@ Measured measure(const Scene& scene, vtkRenderPass* translucent, bool sorted, in
 int main(int count, char** arguments) {
   if (count < 2)
     stop(
-        "vtk_sample OUTDIR [--parts N] [--size WxH] [--frames N] [--weight EXPONENT:NEAR:FAR] [--write-scene] "
+        "vtk_sample OUTDIR [--parts N] [--size WxH] [--frames N] [--weight NAME:NUMBER:NEAR:FAR:REFERENCE] "
+        "[--write-scene] "
         "[--processor-time]");
   const std::string folder = arguments[1];
   int parts = 160, width = 640, height = 360, frames = 9;
-  float exponent = 3.0f, weightNear = 0.1f, weightFar = 100.0f;
+  char weightName[32] = "";
+  float exponent = 3.0f, weightNear = 0.1f, weightFar = 100.0f, reference = 1.0f;
   bool writes = false, fitted = false;
   for (int i = 2; i < count; ++i) {
     const std::string flag = arguments[i];
@@ -386,7 +389,9 @@ int main(int count, char** arguments) {
     else if (flag == "--size")
       good = std::sscanf(value, "%dx%d", &width, &height) == 2, ++i;
     else if (flag == "--weight")
-      fitted = good = std::sscanf(value, "%f:%f:%f", &exponent, &weightNear, &weightFar) == 3, ++i;
+      fitted = good =
+          std::sscanf(value, "%31[^:]:%f:%f:%f:%f", weightName, &exponent, &weightNear, &weightFar, &reference) == 5,
+      ++i;
     else
       good = false;
     if (!good) stop("cannot read " + flag + " " + value);
@@ -414,14 +419,16 @@ int main(int count, char** arguments) {
   vtkNew<vtkTranslucentPass> sorted;
   row(1, "VTK sorted, blended", sorted, true);
   vtkNew<PellucidPass> weighted, front, phenomenological, bare;
-  weighted->weight = fitted ? PLD_WEIGHT_BY_POWER : PLD_WEIGHT_BY_EQ7Z;
+  weighted->weight = PLD_WEIGHT_BY_EQ7Z;
+  if (fitted && pld_weight_named(weightName, &weighted->weight) != PLD_OK)
+    stop(std::string("no weight is called ") + weightName);
   front->weight = weighted->weight;
   front->method = PLD_METHOD_FRONT_TAIL;
   phenomenological->method = PLD_METHOD_PHENOMENOLOGICAL;
   bare->method = PLD_METHOD_WEIGHTED;
   bare->bare = true;
   for (PellucidPass* pass : {weighted.Get(), front.Get(), phenomenological.Get()})
-    pass->weightNear = weightNear, pass->weightFar = weightFar, pass->exponent = exponent;
+    pass->weightNear = weightNear, pass->weightFar = weightFar, pass->exponent = exponent, pass->reference = reference;
   row(2, fitted ? "Pellucid weighted, fitted" : "Pellucid weighted, eq7z", weighted, false);
   row(3, "Pellucid front+tail", front, false);
   row(4, "Pellucid phenomenological, eq5", phenomenological, false);

@@ -149,7 +149,7 @@ TEST(WeightTable, AutoTriesEveryRow) {
   const Stacks stacks;
   std::vector<std::string> rough;
   const WeightFit fit = fitWeight(
-      kGiven, depthsOf({&stacks.lists}),
+      kGiven, depthsOf(stacks.lists),
       [&](const shading::WeightSettings& weight) {
         rough.push_back(weightText(weight));
         return 1.0 + static_cast<double>(weight.exponent);

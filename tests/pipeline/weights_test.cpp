@@ -201,6 +201,13 @@ TEST_F(Weights, GoFromFileToFile) {
     next.sums.weightFrom = folder + file;
     EXPECT_EQ(weightText(drawn(next).plan.pass.weight), weightText(fitted.plan.pass.weight)) << file;
   }
+  Request sorted = shotOf(1.0f);
+  sorted.method = "over";
+  sorted.paint = paintOf("over");
+  Compositor sorts(sorted);
+  sorts.write(folder + "/sorted.exr", sorts.run(sorted));
+  request.sums.weightFrom = folder + "/sorted.exr";
+  EXPECT_THROW(drawn(request), MeaningError);
   request.sums.weightFrom = request.shot.opaque;
   EXPECT_THROW(drawn(request), MeaningError);
   request.sums.weightFrom = folder + "/none.exr";

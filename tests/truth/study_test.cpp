@@ -49,7 +49,7 @@ TEST(WeightAuto, NoListedWeightIsMoreThanTwoPercentBetter) {
       return sum / (3.0 * static_cast<double>(veil.light.size()));
     };
     const auto onProbes = [&](const shading::WeightSettings& weight) { return errorOver(some, weight); };
-    const WeightFit fit = fitWeight(given, depthsOf({&some}), onProbes, onProbes);
+    const WeightFit fit = fitWeight(given, depthsOf(some), onProbes, onProbes);
     const auto errorOf = [&](const shading::WeightSettings& weight) { return errorOver(all, weight); };
     double best = 1e9;
     for (int kind = 0; depthWeightOf(kind); ++kind) best = std::min(best, errorOf(weightOf(kind)));
