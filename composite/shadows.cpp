@@ -18,7 +18,7 @@ bool finite(const glm::vec3& v) {
 }  // namespace
 
 Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, const GBuffer& gbuffer,
-                                  const Camera& camera, int samples) {
+                                  const Camera& camera, int samples, const AirPassed& air) {
   const Image<float>& viewZ = gbuffer.viewZ;
   Image<glm::vec3> result(viewZ.width(), viewZ.height(), glm::vec3(1.0f));
   tbb::parallel_for(0, viewZ.height(), [&](int y) {
@@ -34,8 +34,9 @@ Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, con
           offset = glm::dvec2(0.0);
           depth = static_cast<double>(z);
         }
-        sum +=
-            glm::dvec3(maps.onOpaque(light, glm::vec3(viewPoint(gbuffer, camera, glm::dvec2(x, y) + offset, depth))));
+        const glm::dvec3 point = viewPoint(gbuffer, camera, glm::dvec2(x, y) + offset, depth);
+        const glm::vec3 passed = maps.onOpaque(light, glm::vec3(point));
+        sum += glm::dvec3(air ? passed * air(point) : passed);
       }
       result.at(x, y) = glm::vec3(sum / static_cast<double>(samples));
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/medium.h"
 #include "gbuffer/shadow_maps.h"
 
 namespace pellucid {
@@ -13,8 +14,9 @@ namespace pellucid {
 // What transparent casters leave of a light on each pixel of a G-buffer, at the mean of `samples` positions in it, 1
 // being its centre. 1 where nothing was hit.
 //   camera  in whose view space the maps are
+//   air     multiplies what arrives at each position; empty: nothing is in the air
 Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, const GBuffer& gbuffer,
-                                  const Camera& camera, int samples);
+                                  const Camera& camera, int samples, const AirPassed& air = {});
 
 struct ShadowedLight {
   const Image<glm::vec3>* visibility;  // what passes the transparent things, [0,1]

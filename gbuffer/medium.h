@@ -1,5 +1,6 @@
 // Fog as a record: what fills the air of a shot, and what of the lights comes through it.
 #pragma once
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -66,6 +67,9 @@ struct LightVolume {
   Volume<glm::vec4> visibility;   // lights above one another in z; a unused
   glm::mat4 texelFromView{1.0f};  // centres at +0.5
 };
+
+// Part of one light that the air before it leaves at a point of view space, metres. [0,1]
+using AirPassed = std::function<float(const glm::dvec3& point)>;
 
 // Radiance of the surroundings up to the first order.
 struct AmbientLight {

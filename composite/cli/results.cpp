@@ -61,7 +61,7 @@ void reportError(const RunFlags& flags, const Result& result, nlohmann::json& re
 void reportRun(const RunFlags& flags, const Stages& stages, const RunCounts& counts, const std::string& device,
                nlohmann::json& report) {
   if (counts.shadowRays)
-    say(fmt::format("light on transparent things: {} shadow rays in {:.2f} s", counts.shadowRays,
+    say(fmt::format("light on transparent things: asked {} times in {:.2f} s", counts.shadowRays,
                     counts.shadowSeconds));
   if (counts.clamps.total())
     say(fmt::format("published tier: clamped to what its targets hold: {}", clampText(counts.clamps)));

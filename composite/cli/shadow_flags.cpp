@@ -40,12 +40,13 @@ std::vector<std::string> shadowNames() {
 }  // namespace
 
 void ShadowFlags::addTo(CLI::App& verb) {
-  verb.add_option("--shadows", shadows,
-                  "Shadows of transparent things on the opaque picture and on each other, from the glTF's punctual "
-                  "lights; exact: by "
-                  "rays, one for each light and fragment; exact:opaque: as if what covers half hid all; stochastic: by "
-                  "prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
-                  "corrected: maps without a filter, percentage closer")
+  verb.add_option(
+          "--shadows", shadows,
+          "Shadows of transparent things and of fog on the opaque picture and on each other, from the glTF's punctual "
+          "lights; exact: by "
+          "rays, one for each light and fragment; exact:opaque: as if what covers half hid all; stochastic: by "
+          "prefiltered maps; stochastic:published as printed; stochastic:naive, stratified, "
+          "corrected: maps without a filter, percentage closer")
       ->check(CLI::IsMember(shadowNames()))
       ->capture_default_str();
   sizeOption_ = verb.add_option("--shadow-size", size,

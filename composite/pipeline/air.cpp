@@ -24,31 +24,45 @@ bool isParticle(const Primitive& primitive, const Material& material) {
   return material.transparent() && (primitive.points || material.billboard);
 }
 
-ParticleShadows::ParticleShadows(const Shot& shot) : shot_(shot) {
-  const auto grid = particleGrid(shot.scene, kParticleCells);
+AirBetween::AirBetween(const Shot& shot, std::shared_ptr<const Fog> fog, bool particles) : shot_(shot) {
+  if (fog) fog_.emplace(std::move(fog));
+  const auto grid = particles ? particleGrid(shot.scene, kParticleCells) : nullptr;
   if (!grid) return;
   particles_ = particleFog(grid, shot.camera, {});
   step_ = glm::length(glm::dvec3(glm::inverse(grid->boxFromWorld)[0])) / grid->density.size.x;
 }
 
-void ParticleShadows::dim(std::size_t light, Image<glm::vec3>& visibility) const {
-  if (!particles_) return;
+float AirBetween::byGrids(const PunctualLight& light, const glm::dvec3& point) const {
+  float passed = fog_ && fog_->marches() ? fog_->passed(light, point) : 1.0f;
+  const float depth = particles_ ? gridDepth(*particles_, light, point, step_) : 0.0f;
+  if (depth > 0.0f) passed *= std::exp(-depth);
+  return passed;
+}
+
+float AirBetween::passed(const PunctualLight& light, const glm::dvec3& point) const {
+  const float passed = byGrids(light, point);
+  return fog_ && !fog_->marches() ? passed * fog_->passed(light, point) : passed;
+}
+
+AirPassed AirBetween::bySample(std::size_t light) const {
+  if (!fog_ || fog_->marches()) return {};
+  const PunctualLight block = lightBlock(shot_.scene.lights[light], shot_.camera);
+  return [this, block](const glm::dvec3& point) { return fog_->passed(block, point); };
+}
+
+void AirBetween::dimByGrids(std::size_t light, Image<glm::vec3>& visibility) const {
+  if (!particles_ && !(fog_ && fog_->marches())) return;
   const GBuffer& gbuffer = shot_.opaque.gbuffer;
-  const shading::PunctualLight block = lightBlock(shot_.scene.lights[light], shot_.camera);
+  const PunctualLight block = lightBlock(shot_.scene.lights[light], shot_.camera);
   const PixelRays rays = pixelRays(shot_.camera, gbuffer.display, {gbuffer.data.x0, gbuffer.data.y0}, {0.5, 0.5});
   tbb::parallel_for(0, visibility.height(), [&](int y) {
     for (int x = 0; x < visibility.width(); ++x) {
       const double z = static_cast<double>(gbuffer.viewZ.at(x, y));
       if (!std::isfinite(z)) continue;
       const glm::dvec2 at(rays.offset + rays.scale * glm::vec2(static_cast<float>(x), static_cast<float>(y)));
-      visibility.at(x, y) *= passed(block, glm::dvec3(rays.orthographic ? at : at * z, -z));
+      visibility.at(x, y) *= byGrids(block, glm::dvec3(rays.orthographic ? at : at * z, -z));
     }
   });
-}
-
-float ParticleShadows::passed(const PunctualLight& light, const glm::dvec3& point) const {
-  const float depth = particles_ ? gridDepth(*particles_, light, point, step_) : 0.0f;
-  return depth > 0.0f ? std::exp(-depth) : 1.0f;
 }
 
 Air::Air(const Shot& shot, std::shared_ptr<const ShadowMaps> maps, Journal& journal)
@@ -92,7 +106,8 @@ PointVisibility Air::surfacesAndParticles() {
   };
 }
 
-std::shared_ptr<const LightVolume> lightInParticles(const Shot& shot, Air& air, int texels, Journal& journal) {
+std::shared_ptr<const LightVolume> lightInParticles(const Shot& shot, Air& air, std::shared_ptr<const Fog> fog,
+                                                    int texels, Journal& journal) {
   const bool lit = std::any_of(shot.scene.primitives.begin(), shot.scene.primitives.end(), [&](const Primitive& each) {
     const Material& material = shot.scene.materials[static_cast<std::size_t>(each.material)];
     return isParticle(each, material) && !material.unlit && !material.additive;
@@ -103,7 +118,13 @@ std::shared_ptr<const LightVolume> lightInParticles(const Shot& shot, Air& air, 
     bounds.grid = air.particles().grid;
     Fog clear = air.particles();
     clear.grid = nullptr;  // what stands in the way is all in the visibility
-    return sampleLights(clear, fogBounds(bounds, shot.camera, shot.opaque.gbuffer), texels, air.surfacesAndParticles());
+    PointVisibility visible = air.surfacesAndParticles();
+    if (fog)
+      visible = [&, nearer = visible, between = FogLight(fog)](std::size_t light, const glm::dvec3& point) {
+        const glm::vec3 passed = nearer(light, point);
+        return passed == glm::vec3(0.0f) ? passed : passed * between.passed(clear.lights[light], point);
+      };
+    return sampleLights(clear, fogBounds(bounds, shot.camera, shot.opaque.gbuffer), texels, visible);
   });
 }
 

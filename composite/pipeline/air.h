@@ -8,6 +8,7 @@
 #include "composite/pipeline/shot.h"
 #include "engine_bridge/embree/air_shadows.h"
 #include "engine_bridge/scene/blocks.h"
+#include "engine_bridge/scene/fog_light.h"
 #include "gbuffer/shadow_maps.h"
 
 namespace pellucid {
@@ -41,23 +42,38 @@ class Air {
   double step_ = 0.0;
 };
 
-// What particles leave of a light on what is opaque, by their density: multiplies. Rays do not meet them.
-//   light  index into Scene::lights
-class ParticleShadows {
+// What the air leaves of a light on surfaces: fog, and particles where shadow maps do not hold them. Neither rays nor
+// maps meet either of them, so what they say of surfaces is multiplied by this wherever a surface asks for a light.
+class AirBetween {
  public:
-  explicit ParticleShadows(const Shot& shot);
-  void dim(std::size_t light, Image<glm::vec3>& visibility) const;
+  //   fog        null: none
+  //   particles  whether they count here
+  // The shot must outlive this.
+  AirBetween(const Shot& shot, std::shared_ptr<const Fog> fog, bool particles);
+
+  bool clear() const { return !fog_ && !particles_; }
   // At one point, view space. [0,1]
   float passed(const PunctualLight& light, const glm::dvec3& point) const;
 
+  // The same for all pixels of a picture, in two parts. Closed forms cost little and are asked for every sample of a
+  // pixel, so that the edges of a box are as smooth as those of glass; grids are marched once, to the pixel's centre.
+  //   light  index into Scene::lights
+  AirPassed bySample(std::size_t light) const;
+  void dimByGrids(std::size_t light, Image<glm::vec3>& visibility) const;
+
  private:
+  float byGrids(const PunctualLight& light, const glm::dvec3& point) const;
+
   const Shot& shot_;
+  std::optional<FogLight> fog_;
   std::optional<Fog> particles_;
   double step_ = 0.0;
 };
 
 // What of the lamps reaches the particles. Null where no particle is lit by a lamp, or texels is 0.
+//   fog     which they lie in, or behind; null: none
 //   texels  along the longest edge
-std::shared_ptr<const LightVolume> lightInParticles(const Shot& shot, Air& air, int texels, Journal& journal);
+std::shared_ptr<const LightVolume> lightInParticles(const Shot& shot, Air& air, std::shared_ptr<const Fog> fog,
+                                                    int texels, Journal& journal);
 
 }  // namespace pellucid

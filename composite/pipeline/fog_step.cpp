@@ -148,9 +148,8 @@ void checkFog(const FogText& text, bool hasGrid) {
     throw UsageError("--fog: found a density of 0, expected density=D, the extinction of a metre");
 }
 
-std::shared_ptr<const Fog> placeFogOf(const FogRequest& request, const Shot& shot, double metresPerUnit, Air& air,
-                                      Journal& journal) {
-  if (!request.on()) return nullptr;
+PlacedFog placeFogOf(const FogRequest& request, const Shot& shot, double metresPerUnit, Journal& journal) {
+  if (!request.on()) return {};
   if (!shot.hasCamera)
     throw MeaningError(
         fmt::format("{}: no camera: found deep files alone and no worldToCamera, expected --camera eye=...: fog is "
@@ -173,15 +172,21 @@ std::shared_ptr<const Fog> placeFogOf(const FogRequest& request, const Shot& sho
   AmbientLight ambient{shot.surroundings, {}};
   if (shot.environment) ambient = ambientOf(*shot.environment);
   Fog placed = placeFog(medium, shot.camera, ambient, lightBlocks(shot.scene.lights, shot.camera));
-  const Box bounds = fogBounds(medium, shot.camera, shot.opaque.gbuffer);
-  if (text.shafts > 0 && !placed.lights.empty()) {
-    placed.visibility = journal.time(
-        "light in fog", [&] { return sampleLights(placed, bounds, text.shafts, air.surfacesAndParticles()); });
-  } else if (medium.grid && !placed.lights.empty()) {
-    // What the grid itself leaves of the lights belongs to the grid, not to shafts.
-    placed.visibility = journal.time("light in fog", [&] { return sampleLights(placed, bounds, 96, nullptr); });
-  }
-  return std::make_shared<const Fog>(std::move(placed));
+  return {std::make_shared<const Fog>(std::move(placed)), medium, text.shafts};
+}
+
+std::shared_ptr<const Fog> lightFog(const PlacedFog& placed, const Shot& shot, Air& air, Journal& journal) {
+  if (!placed.fog || placed.fog->lights.empty()) return placed.fog;
+  // What the grid itself leaves of the lights belongs to the grid, not to shafts.
+  constexpr int kGridTexels = 96;
+  if (placed.shafts == 0 && !placed.medium.grid) return placed.fog;
+  auto lit = std::make_shared<Fog>(*placed.fog);
+  const Box bounds = fogBounds(placed.medium, shot.camera, shot.opaque.gbuffer);
+  lit->visibility = journal.time("light in fog", [&] {
+    return placed.shafts > 0 ? sampleLights(*placed.fog, bounds, placed.shafts, air.surfacesAndParticles())
+                             : sampleLights(*placed.fog, bounds, kGridTexels, nullptr);
+  });
+  return lit;
 }
 
 }  // namespace pellucid

@@ -15,8 +15,17 @@ extern const char* const kFogKeys;  // for help
 // What can be said of it without a file. Throws UsageError.
 void checkFog(const FogText& text, bool hasGrid);
 
-// Null when off. Throws UsageError, MeaningError (no camera to march along), and what readDensityGrid throws.
-std::shared_ptr<const Fog> placeFogOf(const FogRequest& request, const Shot& shot, double metresPerUnit, Air& air,
-                                      Journal& journal);
+// A fog where it lies, before anything is known of what stands in its light.
+struct PlacedFog {
+  std::shared_ptr<const Fog> fog;  // null when off
+  MediumSettings medium;
+  int shafts = 0;
+};
+
+// Throws UsageError, MeaningError (no camera to march along), and what readDensityGrid throws.
+PlacedFog placeFogOf(const FogRequest& request, const Shot& shot, double metresPerUnit, Journal& journal);
+
+// The same fog with what surfaces, particles and its own grid leave of the lights in it. Null when off.
+std::shared_ptr<const Fog> lightFog(const PlacedFog& placed, const Shot& shot, Air& air, Journal& journal);
 
 }  // namespace pellucid

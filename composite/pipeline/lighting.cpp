@@ -1,6 +1,7 @@
 #include "composite/pipeline/lighting.h"
 
 #include "composite/pipeline/fog_step.h"
+#include "composite/pipeline/surface_light.h"
 
 namespace pellucid {
 
@@ -19,8 +20,9 @@ void Lighting::applyTo(ShadingSettings& settings, const Shot& shot) const {
 
 std::unique_ptr<Lighting> lightShot(const Request& request, const Shot& shot, Device& device, Journal& journal) {
   auto lighting = std::make_unique<Lighting>();
-  lighting->shadows =
-      journal.time("shadows", [&] { return castShadows(request.shadows, shot, request.passes, device, journal); });
+  const PlacedFog placed = placeFogOf(request.fog, shot, request.shot.scene.metresPerUnit, journal);
+  lighting->shadows = journal.time(
+      "shadows", [&] { return castShadows(request.shadows, shot, placed.fog, request.passes, device, journal); });
   lighting->picture = {&shot.opaque.gbuffer, shot.deepOpaque.get()};
   if (!lighting->shadows.beauty.empty()) {
     lighting->relit = shot.opaque.gbuffer;
@@ -29,9 +31,9 @@ std::unique_ptr<Lighting> lightShot(const Request& request, const Shot& shot, De
   }
   if (lighting->shadows.deepOpaque) lighting->picture.deepOpaque = lighting->shadows.deepOpaque.get();
   Air air(shot, lighting->shadows.maps, journal);
-  lighting->fog = placeFogOf(request.fog, shot, request.shot.scene.metresPerUnit, air, journal);
-  if (shot.hasScene) lighting->particles = lightInParticles(shot, air, request.particleLight, journal);
-  lighting->surfaces = journal.time("shadows", [&] { return surfaceLight(lighting->shadows, shot); });
+  lighting->fog = lightFog(placed, shot, air, journal);
+  if (shot.hasScene) lighting->particles = lightInParticles(shot, air, placed.fog, request.particleLight, journal);
+  lighting->surfaces = journal.time("shadows", [&] { return surfaceLight(lighting->shadows, shot, placed.fog); });
   return lighting;
 }
 

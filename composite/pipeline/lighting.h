@@ -15,7 +15,7 @@ struct LitPicture {
 
 struct Lighting {
   CastShadows shadows;
-  std::shared_ptr<const SurfaceVisibility> surfaces;  // of shadows by rays
+  std::shared_ptr<const SurfaceVisibility> surfaces;  // of shadows by rays, and of maps where there is fog
   std::shared_ptr<const LightVolume> particles;
   std::shared_ptr<const Fog> fog;
   GBuffer relit;  // the picture, where shadows changed it

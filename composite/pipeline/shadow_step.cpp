@@ -11,7 +11,6 @@
 #include "composite/pipeline/deep_shadows.h"
 #include "composite/shadow_views.h"
 #include "composite/shadows.h"
-#include "engine_bridge/embree/surface_shadows.h"
 #include "engine_bridge/gl/shadow_pass.h"
 #include "engine_bridge/scene/opaque_planes.h"
 #include "engine_bridge/scene/particle_grid.h"
@@ -175,12 +174,10 @@ ShadowCounts darkenWhole(const ShadowRequest& request, const Image<glm::vec3>& m
 
 // Each light's part of the picture and what passes the transparent things of it.
 void shadowFlatPicture(const ShadowRequest& request, const ShiningLights& lights, const Shot& shot, int samples,
-                       CastShadows& result, Journal& journal) {
+                       const AirBetween& air, CastShadows& result, Journal& journal) {
   const std::string& path = shot.opaque.document.path;
   const GBuffer& gbuffer = shot.opaque.gbuffer;
   const ShadowRays* rays = result.rays.get();
-  std::optional<ParticleShadows> particles;
-  if (rays) particles.emplace(shot);
   std::vector<Image<glm::vec3>> visibility, layers;
   std::vector<std::size_t> without;
   for (const std::size_t i : lights.numbers) {
@@ -193,9 +190,10 @@ void shadowFlatPicture(const ShadowRequest& request, const ShiningLights& lights
       throw MeaningError(
           fmt::format("{}: --light {}={}: found no such layer with R, G and B in the beauty's window; it has {}", path,
                       name, layer, listNames(nameChannels(shot.opaque.document))));
-    visibility.push_back(rays ? rays->visibility(i, gbuffer, samples)
-                              : mappedVisibility(*result.maps, i, gbuffer, shot.camera, samples));
-    if (rays) particles->dim(i, visibility.back());
+    const AirPassed passed = air.bySample(i);
+    visibility.push_back(rays ? rays->visibility(i, gbuffer, samples, passed)
+                              : mappedVisibility(*result.maps, i, gbuffer, shot.camera, samples, passed));
+    air.dimByGrids(i, visibility.back());
     if (!part) without.push_back(i);
     layers.push_back(part ? std::move(*part) : Image<glm::vec3>());
   }
@@ -226,19 +224,17 @@ void shadowFlatPicture(const ShadowRequest& request, const ShiningLights& lights
 }
 
 // A deep picture has no layers of single lights: its samples are multiplied, or the layer `shadow` is written.
-void shadowDeepPicture(const ShadowRequest& request, const ShiningLights& lights, const Shot& shot, CastShadows& result,
-                       Journal& journal) {
+void shadowDeepPicture(const ShadowRequest& request, const ShiningLights& lights, const Shot& shot,
+                       const AirBetween& air, CastShadows& result, Journal& journal) {
   if (!request.layers.empty())
     throw MeaningError(
         fmt::format("{}: --light: found a deep picture, whose samples have no layers of single lights; "
                     "expected --apply-shadows",
                     shot.opaque.document.path));
-  std::optional<ParticleShadows> particles;
-  if (result.rays) particles.emplace(shot);
   const DeepVisibility visible = [&](std::size_t light, const glm::dvec3& point) {
-    if (!result.rays) return result.maps->onOpaque(light, glm::vec3(point));
-    const glm::vec3 passed = result.rays->visibility(light, point);
-    return passed * particles->passed(lightBlock(shot.scene.lights[light], shot.camera), point);
+    const glm::vec3 passed =
+        result.rays ? result.rays->visibility(light, point) : result.maps->onOpaque(light, glm::vec3(point));
+    return air.clear() ? passed : passed * air.passed(lightBlock(shot.scene.lights[light], shot.camera), point);
   };
   DeepShadows dimmed = dimDeepPicture(shot, lights.numbers, visible);
   result.layers.push_back(shadowLayer(dimmed.multiplier));
@@ -268,7 +264,8 @@ void checkShadows(const ShadowRequest& request) {
     throw UsageError(fmt::format("--shadow-size: found {}, expected a multiple of {}", *request.size, kSizeUnit));
 }
 
-CastShadows castShadows(const ShadowRequest& request, const Shot& shot, int samples, Device& device, Journal& journal) {
+CastShadows castShadows(const ShadowRequest& request, const Shot& shot, std::shared_ptr<const Fog> fog, int samples,
+                        Device& device, Journal& journal) {
   CastShadows result;
   if (!request.on()) return result;
   const ShiningLights lights = lightsOf(request, shot);
@@ -279,28 +276,12 @@ CastShadows castShadows(const ShadowRequest& request, const Shot& shot, int samp
   else
     result.maps = drawMaps(request, shot, device, journal);
   if (!request.views.empty()) writeViews(request.views, *result.maps, shot.scene.lights, journal);
+  const AirBetween air(shot, std::move(fog), request.byRays());
   if (shot.deepOpaque)
-    shadowDeepPicture(request, lights, shot, result, journal);
+    shadowDeepPicture(request, lights, shot, air, result, journal);
   else
-    shadowFlatPicture(request, lights, shot, samples, result, journal);
+    shadowFlatPicture(request, lights, shot, samples, air, result, journal);
   return result;
-}
-
-std::shared_ptr<const SurfaceVisibility> surfaceLight(const CastShadows& shadows, const Shot& shot) {
-  if (!shadows.rays || !shot.hasScene) return nullptr;
-  const bool lit = std::any_of(shot.scene.primitives.begin(), shot.scene.primitives.end(), [&](const Primitive& each) {
-    const Material& material = shot.scene.materials[static_cast<std::size_t>(each.material)];
-    return material.transparent() && !material.unlit && !isParticle(each, material);
-  });
-  if (!lit) return nullptr;
-  const SurfaceVisibility surfaces = surfaceShadows(shot.scene, shot.camera, shot.opaque.gbuffer, shadows.rays);
-  auto particles = std::make_shared<const ParticleShadows>(shot);
-  const std::vector<PunctualLight> lights = lightBlocks(shot.scene.lights, shot.camera);
-  return std::make_shared<const SurfaceVisibility>(
-      [surfaces, particles, lights](std::size_t light, const glm::dvec3& point, std::uint32_t identity) {
-        const glm::vec3 passed = surfaces(light, point, identity);
-        return passed == glm::vec3(0.0f) ? passed : passed * particles->passed(lights[light], point);
-      });
 }
 
 }  // namespace pellucid

@@ -25,11 +25,9 @@ struct CastShadows {
 void checkShadows(const ShadowRequest& request);
 
 // Notes what it could not know. Throws MeaningError for a light or layer that is not there.
+//   fog      that dims the lights on their way to the picture; null: none
 //   samples  positions in a pixel
-CastShadows castShadows(const ShadowRequest& request, const Shot& shot, int samples, Device& device, Journal& journal);
-
-// What rays say of the light on the shot's transparent surfaces, past surfaces and particles. Null unless shadows are
-// by rays and some such surface is lit. The arguments must outlive it.
-std::shared_ptr<const SurfaceVisibility> surfaceLight(const CastShadows& shadows, const Shot& shot);
+CastShadows castShadows(const ShadowRequest& request, const Shot& shot, std::shared_ptr<const Fog> fog, int samples,
+                        Device& device, Journal& journal);
 
 }  // namespace pellucid

@@ -125,6 +125,9 @@ std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, cons
       if (shadowRays)
         arriving.irradiance *= shadowRays->visibilityFrom(shading::identityOf(instance.identity, crossing.triangle),
                                                           lightIndex[i], glm::dvec3(position));
+      else if (settings.shadowRays)
+        arriving.irradiance *=
+            (*settings.shadowRays)(i, glm::dvec3(position), shading::identityOf(instance.identity, crossing.triangle));
       else if (settings.shadows)
         arriving.irradiance *= settings.shadows->visibility(lightIndex[i], position);
       reflected += shading::reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;

@@ -17,7 +17,7 @@ class RayFragments {
   ~RayFragments();
 
   // From now on these rays say what transparent things are in the way of the scene's lights, instead of
-  // settings.shadows.
+  // settings.shadowRays or settings.shadows.
   void shadowBy(std::shared_ptr<const ShadowRays> rays);
 
   // Every transparent fragment in front of the G-buffer and of the nearest solid, in bands of rows from the top that

@@ -116,7 +116,8 @@ glm::vec3 ShadowRays::visibilityFrom(std::uint32_t identity, std::size_t light, 
   return impl_->visibility(light, point, crossings, identity);
 }
 
-Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffer, int samples) const {
+Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffer, int samples,
+                                        const AirPassed& air) const {
   const Image<float>& viewZ = gbuffer.viewZ;
   Image<glm::vec3> result(viewZ.width(), viewZ.height(), glm::vec3(1.0f));
   const CameraRays rays(impl_->camera, gbuffer.display);
@@ -135,7 +136,8 @@ Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffe
         const double depth = plane.z(offset.x, offset.y);
         const Ray ray = rays.through(centre + (depth > 0.0 ? offset : glm::dvec2(0.0)));
         const glm::dvec3 point = ray.origin + (depth > 0.0 ? depth : static_cast<double>(z)) * ray.direction;
-        sum += glm::dvec3(impl_->visibility(light, point, crossings));
+        const glm::vec3 passed = impl_->visibility(light, point, crossings);
+        sum += glm::dvec3(air ? passed * air(point) : passed);
       }
       result.at(x, y) = glm::vec3(sum / static_cast<double>(samples));
     }

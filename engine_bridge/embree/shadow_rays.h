@@ -5,6 +5,7 @@
 
 #include "engine_bridge/scene/scene.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/medium.h"
 
 namespace pellucid {
 
@@ -30,7 +31,8 @@ class ShadowRays {
 
   // The same for every pixel of a G-buffer, at the mean of `samples` positions in it: 1 is its centre. Between depths
   // of one surface the position follows its plane. 1 where nothing was hit. The same bits for every number of threads.
-  Image<glm::vec3> visibility(std::size_t light, const GBuffer& gbuffer, int samples) const;
+  //   air  multiplies what arrives at each position; empty: nothing is in the air
+  Image<glm::vec3> visibility(std::size_t light, const GBuffer& gbuffer, int samples, const AirPassed& air = {}) const;
 
  private:
   struct Impl;

@@ -32,7 +32,7 @@ void ShadowRayTable::add(const FragmentLists& lists, const Window& band, const S
   texels_.resize(first + lists.fragments.size() * stride);
   if (texels_.size() > std::numeric_limits<std::uint32_t>::max() / 2)
     throw ResourceError(
-        "--shadows exact: more fragments than a device's table can number; --shadows stochastic needs none");
+        "--shadows: more fragments than a device's table can number; --shadows stochastic without fog needs none");
   tbb::parallel_for(band.y0, band.y1, [&](int y) {
     for (int x = band.x0; x < band.x1; ++x) {
       const auto pixel = static_cast<std::size_t>((y - band.y0) * band.width() + x - band.x0);
@@ -70,8 +70,8 @@ ShadowRayTable::Counts ShadowRayTable::finish() {
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (texels_.size() > static_cast<std::size_t>(most))
     throw ResourceError(
-        fmt::format("GL: --shadows exact: light at the fragments takes {} texels, and the device holds at "
-                    "most {}; --shadows stochastic needs none",
+        fmt::format("GL: --shadows: light at the fragments takes {} texels, and the device holds at most {}; "
+                    "--shadows stochastic without fog needs none",
                     texels_.size(), most));
   glNamedBufferData(storage_.name(), static_cast<GLsizeiptr>(texels_.size() * sizeof(glm::uvec4)), texels_.data(),
                     GL_STREAM_DRAW);

@@ -6,7 +6,6 @@
 //   PunctualLight lightNumber(int light)          view space
 // and by these values: ivec3 gridSize, bool hasVisibility, mat4 volumeFromView (to texels, centres at +0.5), int lightsOfFog.
 #include "shared/light_volume.glsl"
-#include "shared/lights.glsl"
 #include "shared/medium.glsl"
 
 PLD_FN float densityAt(vec3 at) {
@@ -16,23 +15,6 @@ PLD_FN float densityAt(vec3 at) {
   float c = mixed(densityTexel(t.low + ivec3(0, 0, 1)), densityTexel(t.low + ivec3(1, 0, 1)), t.part.x);
   float d = mixed(densityTexel(t.low + ivec3(0, 1, 1)), densityTexel(t.low + ivec3(1, 1, 1)), t.part.x);
   return mixed(mixed(a, b, t.part.y), mixed(c, d, t.part.y), t.part.z);
-}
-
-// What even and layered fog leaves of a light on its way to a point. A sun over fog without a bound above arrives as stated.
-PLD_FN float lightPassed(Medium medium, PunctualLight light, vec3 toLight, vec3 point) {
-  if (medium.extinction.w != 0.0f) return 1.0f;  // the light volume holds it
-  bool endless = light.direction.w == 0.0f;
-  float metres = endless ? 1e30f : length(vec3(light.position) - point);
-  if (medium.extinction.z != 0.0f) {
-    vec2 inside = boxSpan(medium.boxFromView, point, toLight);
-    metres = min(metres, max(inside.y, 0.0f));
-  } else if (endless) {
-    precise float slope = dot(vec3(medium.up), toLight) * medium.extinction.y;
-    if (slope <= 1e-6f) return 1.0f;
-    precise float depth = extinctionAt(medium, heightOf(medium, point)) / slope;
-    return pldExp(-depth);
-  }
-  return pldExp(-depthBetween(medium, point, toLight, 0.0f, metres));
 }
 
 // Radiance scattered towards the eye per opacity, at a point.

@@ -2,6 +2,7 @@
 // Fog along one ray: how dense it is, how it is cut into steps, and how it enters a pixel's sums. PT17 section 7.2, MODEL
 // section 11. Transmittance of even and layered fog is a closed form; light that it scatters is marched.
 #include "shared/accumulate.glsl"
+#include "shared/lights.glsl"
 #include "shared/surface.glsl"
 
 // A medium, in the view space of one camera.
@@ -91,6 +92,28 @@ PLD_FN vec2 boxSpan(mat4 boxFromView, vec3 origin, vec3 direction) {
     }
   }
   return span;
+}
+
+// What even and layered fog leaves of a light on its way to a point, in the fog or beyond it. A sun over fog without a
+// bound above arrives as stated.
+//   toLight  unit
+PLD_FN float lightPassed(Medium medium, PunctualLight light, vec3 toLight, vec3 point) {
+  if (medium.extinction.w != 0.0f) return 1.0f;  // grids are marched
+  bool endless = light.direction.w == 0.0f;
+  float start = 0.0f;
+  float end = endless ? 1e30f : length(vec3(light.position) - point);
+  if (medium.extinction.z != 0.0f) {
+    vec2 inside = boxSpan(medium.boxFromView, point, toLight);
+    start = inside.x;
+    end = min(end, inside.y);
+    if (!(end > start)) return 1.0f;
+  } else if (endless) {
+    precise float slope = dot(vec3(medium.up), toLight) * medium.extinction.y;
+    if (slope <= 1e-6f) return 1.0f;
+    precise float depth = extinctionAt(medium, heightOf(medium, point)) / slope;
+    return pldExp(-depth);
+  }
+  return pldExp(-depthBetween(medium, point, toLight, start, end));
 }
 
 //   z  planar depth of what ends the ray, +inf for nothing
