@@ -21,16 +21,17 @@ Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, con
                                   const Camera& camera, int samples, const AirPassed& air) {
   const Image<float>& viewZ = gbuffer.viewZ;
   Image<glm::vec3> result(viewZ.width(), viewZ.height(), glm::vec3(1.0f));
+  const DepthPlanes planes(gbuffer, camera);
   tbb::parallel_for(0, viewZ.height(), [&](int y) {
     for (int x = 0; x < viewZ.width(); ++x) {
       const float z = viewZ.at(x, y);
       if (!std::isfinite(z)) continue;
-      const DepthPlane plane = depthPlaneAt(viewZ, x, y);
+      const DepthPlane plane = planes.at(x, y);
       glm::dvec3 sum(0.0);
       for (int i = 0; i < samples; ++i) {
         glm::dvec2 offset = samplePosition(i, samples) - 0.5;
         double depth = plane.z(offset.x, offset.y);
-        if (!(depth > 0.0)) {
+        if (!std::isfinite(depth)) {
           offset = glm::dvec2(0.0);
           depth = static_cast<double>(z);
         }

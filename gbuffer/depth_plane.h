@@ -1,38 +1,43 @@
-// The depth of a pixel and how it changes across it.
+// The opaque depth of a pixel and how it changes across it: what a sample elsewhere in the pixel meets.
 #pragma once
-#include <cmath>
+#include <glm/glm.hpp>
 #include <limits>
 
-#include "gbuffer/image.h"
+#include "gbuffer/gbuffer.h"
 
 namespace pellucid {
 
-// 1/z is linear on a plane; of the two neighbours the one that changes less lies on the same surface.
+// In a picture 1/z is linear on a plane; where the camera is orthographic, z is.
 struct DepthPlane {
-  double inverse = 0, across = 0, down = 0;
-  // At an offset from the pixel's centre, in pixels; not positive where the plane has left the picture.
-  double z(double x, double y) const { return 1.0 / (inverse + across * x + down * y); }
+  double centre = 0;            // z at the pixel's centre, planar metres
+  double across = 0, down = 0;  // change per pixel of what is linear, as a part of its value at the centre
+  bool orthographic = false;
+  // At an offset from the pixel's centre, in pixels; +inf where the plane has left the picture.
+  double z(double x, double y) const {
+    const double linear = 1.0 + across * x + down * y;
+    if (!(linear > 0.0)) return std::numeric_limits<double>::infinity();
+    return orthographic ? centre * linear : centre / linear;
+  }
 };
 
-inline double inverseDepthSlope(const Image<float>& viewZ, int x, int y, int dx, int dy) {
-  const double here = 1.0 / static_cast<double>(viewZ.at(x, y));
-  double best = 0, least = std::numeric_limits<double>::infinity();
-  for (const int side : {-1, 1}) {
-    const int u = x + side * dx, v = y + side * dy;
-    if (u < 0 || v < 0 || u >= viewZ.width() || v >= viewZ.height() || !std::isfinite(viewZ.at(u, v))) continue;
-    const double change = side * (1.0 / static_cast<double>(viewZ.at(u, v)) - here);
-    if (std::abs(change) < least) {
-      least = std::abs(change);
-      best = change;
-    }
-  }
-  return best;
-}
+// The planes of all pixels of a picture. Neighbours tell the slope: those that lie on one surface with the pixel, which
+// are the ones that continue each other. Where none do, as on a thing one pixel wide, the file's normal tells it; where
+// there is none either, the depth is that of the centre all over the pixel.
+class DepthPlanes {
+ public:
+  //   gbuffer  must outlive this; its depth is what it was when this was made
+  DepthPlanes(const GBuffer& gbuffer, const Camera& camera);
 
-// Of a pixel whose depth is finite.
-inline DepthPlane depthPlaneAt(const Image<float>& viewZ, int x, int y) {
-  return {1.0 / static_cast<double>(viewZ.at(x, y)), inverseDepthSlope(viewZ, x, y, 1, 0),
-          inverseDepthSlope(viewZ, x, y, 0, 1)};
-}
+  // Of a pixel of the data window whose depth is finite.
+  DepthPlane at(int x, int y) const;
+  // The depth of all pixels at one place in each of them.
+  //   sample  (0..1, y down), (0.5, 0.5) the centre
+  void depthAt(glm::dvec2 sample, Image<float>& viewZ) const;
+
+ private:
+  const GBuffer& gbuffer_;
+  bool orthographic_;
+  Image<glm::vec2> slopes_;  // DepthPlane::across and down
+};
 
 }  // namespace pellucid

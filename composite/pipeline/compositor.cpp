@@ -12,6 +12,7 @@
 #include "composite/pipeline/held_out_planes.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
+#include "composite/pipeline/pass_picture.h"
 #include "composite/pipeline/sums.h"
 #include "composite/pipeline/weight_file.h"
 #include "gbuffer/errors.h"
@@ -111,6 +112,14 @@ TransparentPass* Compositor::triangles() {
   return triangles_.get();
 }
 
+const DepthPlanes* Compositor::depthPlanes(int passes) {
+  if (passes == 1 || shot_->deepOpaque) return nullptr;
+  if (!depthPlanes_)
+    depthPlanes_ = journal_.time("depth planes",
+                                 [&] { return std::make_unique<DepthPlanes>(shot_->opaque.gbuffer, shot_->camera); });
+  return depthPlanes_.get();
+}
+
 const Lighting& Compositor::lightOf(const Request& request) {
   if (!lighting_ || !sameLight(lit_, request)) {
     lighting_ = lightShot(request, *shot_, device_, journal_);
@@ -141,11 +150,14 @@ Compositor::Run Compositor::prepare(const Request& request) {
 
 Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal,
                        RunCounts& counts) {
-  const PaintContext context{plan, *shot_, run.lighting->picture, *run.sources, device_, journal, counts};
+  PassPicture moving(run.lighting->picture, depthPlanes(plan.passes), triangles(), shot_->camera);
+  const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
   VeilMean mean;
   for (int i = 0; i < plan.passes; ++i) {
-    Veil veil = painter->paint(samplePass(pass, i, plan.passes), i);
+    const PassSettings sample = samplePass(pass, i, plan.passes);
+    moving.moveTo(sample.sample);
+    Veil veil = painter->paint(sample, i);
     journal.time("average", [&] { mean.add(std::move(veil)); });
   }
   return journal.time("average", [&] {
@@ -201,18 +213,22 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
   RunCounts counts;
   Plan sums = sumsPlanOf(run.plan, facts_);
   sums.heldOut = run.plan.heldOut;
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), triangles(), shot_->camera);
+  const GBuffer& moved = *moving.picture().gbuffer;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, i, run.plan.passes);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
     sample.normalisation = sums.pass.normalisation;
+    moving.moveTo(sample.sample);
     PassPlanes made;
     if (others.empty()) {
-      made = passPlanes(sums, sample, i, run, run.lighting->picture, request, counts);
+      made = passPlanes(sums, sample, i, run, moving.picture(), request, counts);
     } else {
-      const GBuffer held = others.before(gbuffer, i);
-      const DrawnOverPicture over(triangles(), held, gbuffer, shot_->camera);
-      made = passPlanes(sums, sample, i, run, {&held, nullptr}, request, counts);
+      const GBuffer held = others.before(moved, i);
+      const GBuffer heldAtCentres = others.before(gbuffer, i);
+      const DrawnOverPicture over(triangles(), held, moved, shot_->camera);
+      made = passPlanes(sums, sample, i, run, {&held, &heldAtCentres, nullptr}, request, counts);
       others.addTo(made.planes, i);
     }
     made.planes.info.method = made.scatter.info.method = run.plan.method;

@@ -10,6 +10,7 @@
 #include "composite/pipeline/plan.h"
 #include "composite/pipeline/result.h"
 #include "composite/pipeline/validate.h"
+#include "gbuffer/depth_plane.h"
 #include "gbuffer/planes_io.h"
 
 namespace pellucid {
@@ -53,6 +54,8 @@ class Compositor {
   struct Run;  // what a request's steps share
   const Lighting& lightOf(const Request& request);
   TransparentPass* triangles();
+  // Of the picture's depth, for passes away from pixel centres; null for a deep picture, whose samples have no planes.
+  const DepthPlanes* depthPlanes(int passes);
   Run prepare(const Request& request);
   PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, int pass, const Run& run,
                         const LitPicture& picture, const Request& request, RunCounts& counts);
@@ -64,6 +67,7 @@ class Compositor {
   mutable ShotFacts facts_;  // with the depths of the layers once a weight has asked
   mutable bool knowsDepths_ = false;
   std::unique_ptr<TransparentPass> triangles_;
+  std::unique_ptr<DepthPlanes> depthPlanes_;
   // The light of the last request; requests that differ in nothing that lights share it.
   std::unique_ptr<Lighting> lighting_;
   Request lit_;

@@ -23,11 +23,11 @@ std::unique_ptr<Lighting> lightShot(const Request& request, const Shot& shot, De
   const PlacedFog placed = placeFogOf(request.fog, shot, request.shot.scene.metresPerUnit, journal);
   lighting->shadows = journal.time(
       "shadows", [&] { return castShadows(request.shadows, shot, placed.fog, request.passes, device, journal); });
-  lighting->picture = {&shot.opaque.gbuffer, shot.deepOpaque.get()};
+  lighting->picture = {&shot.opaque.gbuffer, &shot.opaque.gbuffer, shot.deepOpaque.get()};
   if (!lighting->shadows.beauty.empty()) {
     lighting->relit = shot.opaque.gbuffer;
     lighting->relit.beauty = std::move(lighting->shadows.beauty);
-    lighting->picture.gbuffer = &lighting->relit;
+    lighting->picture.gbuffer = lighting->picture.centres = &lighting->relit;
   }
   if (lighting->shadows.deepOpaque) lighting->picture.deepOpaque = lighting->shadows.deepOpaque.get();
   Air air(shot, lighting->shadows.maps, journal);

@@ -7,9 +7,10 @@
 
 namespace pellucid {
 
-// The picture as it is lit: the shot's own unless shadows fell on it. Both outlive the run.
+// The picture as it is lit: the shot's own unless shadows fell on it. All of it outlives the run.
 struct LitPicture {
-  const GBuffer* gbuffer = nullptr;
+  const GBuffer* gbuffer = nullptr;        // its depth is that of where a pass samples the pixels
+  const GBuffer* centres = nullptr;        // the same picture at pixel centres, where its colours are looked up
   const DeepOpaque* deepOpaque = nullptr;  // null for a flat picture
 };
 

@@ -121,12 +121,13 @@ Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffe
   const Image<float>& viewZ = gbuffer.viewZ;
   Image<glm::vec3> result(viewZ.width(), viewZ.height(), glm::vec3(1.0f));
   const CameraRays rays(impl_->camera, gbuffer.display);
+  const DepthPlanes planes(gbuffer, impl_->camera);
   tbb::parallel_for(0, viewZ.height(), [&](int y) {
     std::vector<Crossing> crossings;
     for (int x = 0; x < viewZ.width(); ++x) {
       const float z = viewZ.at(x, y);
       if (!std::isfinite(z)) continue;
-      const DepthPlane plane = depthPlaneAt(viewZ, x, y);
+      const DepthPlane plane = planes.at(x, y);
       const glm::dvec2 centre(gbuffer.data.x0 + x + 0.5, gbuffer.data.y0 + y + 0.5);
       glm::dvec3 sum(0.0);
       for (int i = 0; i < samples; ++i) {
@@ -134,8 +135,9 @@ Image<glm::vec3> ShadowRays::visibility(std::size_t light, const GBuffer& gbuffe
         // One set of positions for all pixels: a straight edge then has one look along its length.
         if (samples > 1) offset = glm::dvec2(samplePoint(static_cast<std::uint32_t>(i), 0)) - 0.5;
         const double depth = plane.z(offset.x, offset.y);
-        const Ray ray = rays.through(centre + (depth > 0.0 ? offset : glm::dvec2(0.0)));
-        const glm::dvec3 point = ray.origin + (depth > 0.0 ? depth : static_cast<double>(z)) * ray.direction;
+        const bool left = !std::isfinite(depth);  // the plane has left the picture
+        const Ray ray = rays.through(centre + (left ? glm::dvec2(0.0) : offset));
+        const glm::dvec3 point = ray.origin + (left ? static_cast<double>(z) : depth) * ray.direction;
         const glm::vec3 passed = impl_->visibility(light, point, crossings);
         sum += glm::dvec3(air ? passed * air(point) : passed);
       }

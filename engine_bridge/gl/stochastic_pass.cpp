@@ -70,7 +70,7 @@ Image<glm::vec4> readBack(const gl::Texture& texture, int width, int height) {
 }  // namespace
 
 struct StochasticPass::Impl {
-  const GBuffer& gbuffer;
+  const GBuffer* gbuffer;
   Renderer renderer;
   StochasticPassStatistics statistics;
   std::unique_ptr<PixelTargets> targets;
@@ -79,7 +79,7 @@ struct StochasticPass::Impl {
   int ranksOf = 0;  // samples of the table on the device
 
   Impl(const Scene& scene, const GBuffer& gbufferGiven, const Camera& camera)
-      : gbuffer(gbufferGiven), renderer(scene, gbuffer, camera) {}
+      : gbuffer(&gbufferGiven), renderer(scene, gbufferGiven, camera) {}
   void uploadRanks(int samples);
   void drawBand(const Window& band, int channels, std::uint32_t count, bool winners, Image<glm::vec3>& empty, int y);
   void read(const Window& part, StochasticPlanes& planes);
@@ -184,6 +184,11 @@ void StochasticPass::Impl::read(const Window& part, StochasticPlanes& planes) {
 
 StochasticPass::StochasticPass(GlContext&, const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
     : impl_(new Impl(scene, gbuffer, camera)) {}
+
+void StochasticPass::over(const GBuffer& gbuffer, const Camera& camera) {
+  impl_->renderer.over(gbuffer, camera);
+  impl_->gbuffer = &gbuffer;
+}
 StochasticPass::~StochasticPass() = default;
 
 bool StochasticPass::scatters(const PassSettings& settings) const {
@@ -228,7 +233,7 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
   Impl& self = *impl_;
   self.statistics = {};
   self.statistics.passes = samples.winnersOnly ? 3 : 2;
-  const Window& data = self.gbuffer.data;
+  const Window& data = self.gbuffer->data;
   StochasticPlanes planes = emptySamples(data);
   PassSettings plain = settings;
   plain.scatter.refract = shading::PLD_REFRACT_OFF;

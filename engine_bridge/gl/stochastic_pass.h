@@ -31,6 +31,9 @@ class StochasticPass {
   StochasticPass(GlContext& context, const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
   ~StochasticPass();
 
+  // As TransparentPass::over().
+  void over(const GBuffer& gbuffer, const Camera& camera);
+
   // Whether layers refract or diffuse under these settings, which this pass leaves out.
   bool scatters(const PassSettings& settings) const;
 

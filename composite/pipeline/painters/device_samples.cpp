@@ -28,6 +28,7 @@ class DeviceSamplesPainter : public Painter {
     const GBuffer& gbuffer = *context_.picture.gbuffer;
     Veil veil(gbuffer.data.width(), gbuffer.data.height());
     PassStatistics statistics;
+    sampler_.over(gbuffer, context_.shot.camera);
     StochasticPlanes planes = drawSamples(sampler_, sample, settings_, pass, context_.plan.passes, statistics);
     TransparentPass& sums = *context_.sources.triangles();
     if (!sums.scatters(sample)) {
@@ -38,7 +39,7 @@ class DeviceSamplesPainter : public Painter {
       unlit.shadowRays = nullptr;
       unlit.occlusion.occluders = nullptr;
       OitPlanes scattering = sums.accumulate(unlit);
-      const Backdrop backdrop = backdropOf(gbuffer, planes.solid);
+      const Backdrop backdrop = backdropOf(*context_.picture.centres, planes.solid);
       scattering.solid = planes.solid;
       hideSolids(scattering);
       planes.solid = scattering.solid;

@@ -116,7 +116,7 @@ class ListsPainter : public Painter {
   }
 
   void showBackground(Veil& veil) {
-    const Backdrop backdrop = backdropOf(*context_.picture.gbuffer, planes_.solid);
+    const Backdrop backdrop = backdropOf(*context_.picture.centres, planes_.solid);
     const Lookups lookups(backdrop, planes_, context_.plan.lookup);
     if (context_.plan.heldOut)
       showThroughHeldOut(lookups, lookedUp_, veil);

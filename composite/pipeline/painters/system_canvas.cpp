@@ -20,8 +20,9 @@ void putSolid(const glm::vec4& solid, bool lookedUp, Veil& veil, std::size_t at)
 
 }  // namespace
 
-SystemCanvas::SystemCanvas(const GBuffer& gbuffer, const DeepOpaque* deep) : gbuffer_(gbuffer), deep_(deep) {
-  if (deep) places_ = rowOfPlaces(*deep);
+SystemCanvas::SystemCanvas(const LitPicture& picture)
+    : gbuffer_(*picture.gbuffer), centres_(*picture.centres), deep_(picture.deepOpaque) {
+  if (deep_) places_ = rowOfPlaces(*deep_);
 }
 
 Veil SystemCanvas::empty() const {
@@ -69,9 +70,9 @@ void SystemCanvas::addSolids(const OitPlanes& planes, Veil& veil) const {
 
 Veil SystemCanvas::finish(const OitPlanes& planes, const LookupSettings& lookup, Veil veil) const {
   const bool scatters = planes.scatters();
-  if (deep_) return veilOfPlaces(places_, veil, scatters ? &planes : nullptr, lookup, *deep_, gbuffer_);
+  if (deep_) return veilOfPlaces(places_, veil, scatters ? &planes : nullptr, lookup, *deep_, centres_);
   if (scatters) {
-    const Backdrop backdrop = backdropOf(gbuffer_, planes.solid);
+    const Backdrop backdrop = backdropOf(centres_, planes.solid);
     showThrough(Lookups(backdrop, planes, lookup), veil);
   }
   return veil;

@@ -5,6 +5,7 @@
 
 #include "composite/deep/deep_opaque.h"
 #include "composite/gather.h"
+#include "composite/pipeline/lighting.h"
 #include "composite/veil.h"
 
 namespace pellucid {
@@ -14,8 +15,8 @@ class SystemCanvas {
   // Composites lists to a veil; both of the window.
   using Mix = std::function<void(const FragmentLists& lists, const Window& window, Veil& veil)>;
 
-  //   deep  the picture's samples, or null; both outlive this
-  SystemCanvas(const GBuffer& gbuffer, const DeepOpaque* deep);
+  //   picture  outlives this
+  explicit SystemCanvas(const LitPicture& picture);
 
   // A veil in which nothing is.
   Veil empty() const;
@@ -28,7 +29,7 @@ class SystemCanvas {
   Veil finish(const OitPlanes& planes, const LookupSettings& lookup, Veil veil) const;
 
  private:
-  const GBuffer& gbuffer_;
+  const GBuffer &gbuffer_, &centres_;
   const DeepOpaque* deep_;
   HeldOutRow places_;  // of a deep picture: all of its places
 };

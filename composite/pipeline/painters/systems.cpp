@@ -96,7 +96,7 @@ class SystemsPainter : public Painter {
     bare.fog = nullptr;  // it neither bends nor hides all
     const OitPlanes planes = sumsOf(whole, bare);
     const DeepOpaque* deep = context_.picture.deepOpaque;
-    SystemCanvas canvas(gbuffer, deep);
+    SystemCanvas canvas(context_.picture);
     Veil veil = canvas.empty();
     if (sample.fog) fog_ = withFog(*sample.fog, gbuffer, sample.sample, marksOf(systems_, planes, gbuffer.data), deep);
     addFogRun(sample, kNothing, systems_.empty() ? 0.0 : systems_[0].z, canvas, veil);
@@ -118,6 +118,7 @@ class SystemsPainter : public Painter {
 
   void mixSystem(const LayerSystem& system, const PassSettings& sample, int pass, const OitPlanes& whole,
                  SystemCanvas& canvas, Veil& own, RunCounts& counts) {
+    if (system.pass) system.pass->over(*context_.picture.gbuffer, context_.shot.camera);
     LayerSources sources(system.pass.get());
     if (system.deep) sources.join(deepFiles({system.deep, 1}));
     const PaintContext part{context_.plan,    context_.shot, context_.picture, sources, context_.device,

@@ -1,5 +1,5 @@
 // Deep EXR files as transparent layers. Their samples are filtered already, so a pass's place in the pixel does not
-// move them.
+// move them, and they are compared with the depth of its centre.
 #include <algorithm>
 
 #include "composite/pipeline/layer_source.h"
@@ -20,7 +20,7 @@ class DeepFiles : public LayerSource {
   }
   ListSink into(const SourceView& view, ListSink next) override {
     const std::uint64_t most = std::max<std::uint64_t>(view.settings.budgetBytes / kBytesASample, 1);
-    return [this, &gbuffer = *view.picture.gbuffer, rule = view.rule, most, next = std::move(next)](
+    return [this, &gbuffer = *view.picture.centres, rule = view.rule, most, next = std::move(next)](
                const FragmentLists& lists) { mergeDeep(lists, files_, gbuffer, rule, most, next); };
   }
 

@@ -1,0 +1,37 @@
+// The opaque picture as one jittered pass sees it.
+#pragma once
+#include <memory>
+
+#include "composite/pipeline/lighting.h"
+#include "engine_bridge/gl/transparent_pass.h"
+#include "gbuffer/depth_plane.h"
+
+namespace pellucid {
+
+// The picture whose depth moves with the passes: whatever reads it, layers, fog, low resolution or samples, meets the
+// opaque surface where the pass samples the pixel, and needs to know nothing of it. Where a pass samples pixel centres,
+// and where the picture is deep, it is the picture itself.
+class PassPicture {
+ public:
+  // The others must outlive this.
+  //   planes     of the picture's depth; null leaves it as it is
+  //   triangles  drawn over this picture while it lives; null: none
+  PassPicture(const LitPicture& centres, const DepthPlanes* planes, TransparentPass* triangles, const Camera& camera);
+  ~PassPicture();
+  PassPicture(const PassPicture&) = delete;
+  PassPicture& operator=(const PassPicture&) = delete;
+
+  void moveTo(glm::dvec2 sample);
+  // Of the pass that it was moved to; always the same object.
+  const LitPicture& picture() const { return picture_; }
+
+ private:
+  const LitPicture& centres_;
+  const DepthPlanes* planes_;
+  TransparentPass* triangles_;
+  const Camera& camera_;
+  GBuffer moved_;
+  LitPicture picture_;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,168 @@
+#include "gbuffer/depth_plane.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace pellucid {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr int kReach = 4;  // pixels to either side
+// Two pixels side by side that continue nothing are taken for one surface where what is linear changes by less.
+constexpr double kPairChange = 1.0 / 16.0;
+constexpr double kGrazing = 1.0 / 64.0;  // a normal this square to the ray tells no slope
+
+// Along one axis through a pixel: what is linear on a plane, as a part of its value at the pixel.
+struct Line {
+  double value[2 * kReach + 1];
+  double rounding;  // of a second difference, by the precision of the depth
+  double at(int k) const { return value[k + kReach]; }
+  double bend(int k) const { return std::abs(at(k + 1) - 2.0 * at(k) + at(k - 1)); }  // NaN where one is missing
+  bool straight(int k) const { return bend(k) <= rounding * std::max({1.0, at(k), at(k - 1), at(k + 1)}); }
+};
+
+// How many pixels to one side lie on one straight line with the pixel; 1 where there is a neighbour at all.
+int run(const Line& line, int side) {
+  if (std::isnan(line.at(side))) return 0;
+  int length = 1;
+  while (length < kReach && line.straight(side * length)) ++length;
+  return length;
+}
+
+// On planes, and on anything as flat as the depth's precision tells: the longest run, against rounding.
+std::optional<double> straightSlope(const Line& line) {
+  const int right = run(line, 1), left = run(line, -1);
+  if (right > 0 && left > 0 && line.straight(0)) {
+    const int both = std::min(right, left);
+    const int r = both > 1 ? both : right, l = both > 1 ? both : left;
+    return (line.at(r) - line.at(-l)) / (r + l);
+  }
+  if (right < 2 && left < 2) return std::nullopt;
+  const int longer = right >= left ? right : -left;
+  return (line.at(longer) - 1.0) / longer;
+}
+
+// On curved surfaces: where the slope changes by less than half of itself, to both sides or to one.
+std::optional<double> curvedSlope(const Line& line) {
+  const double steepest = std::max(std::abs(line.at(1) - 1.0), std::abs(line.at(-1) - 1.0));
+  if (line.bend(0) <= 0.5 * steepest) return 0.5 * (line.at(1) - line.at(-1));
+  const double bends[2] = {line.bend(1), line.bend(-1)};
+  const double least = std::fmin(bends[0], bends[1]);  // NaN where there is no side
+  const int side = bends[0] == least ? 1 : -1;
+  const double change = line.at(side) - 1.0;
+  if (!(least <= 0.5 * std::abs(change))) return std::nullopt;
+  return side * (change - 0.5 * (line.at(2 * side) - 2.0 * line.at(side) + 1.0));
+}
+
+// On things two pixels wide: the neighbour that belongs to no surface of its own.
+double pairSlope(const Line& line) {
+  double slope = 0.0, least = kPairChange;
+  for (const int side : {-1, 1}) {
+    const double change = line.at(side) - 1.0;
+    if (line.straight(2 * side) || !(std::abs(change) < least)) continue;
+    least = std::abs(change);
+    slope = side * change;
+  }
+  return slope;
+}
+
+// The slopes of planes by the normals of the file.
+class NormalSlopes {
+ public:
+  NormalSlopes(const GBuffer& gbuffer, const Camera& camera)
+      : normal_(gbuffer.normal), viewFromWorld_(camera.viewFromWorld), orthographic_(camera.orthographic) {
+    const glm::dvec2 size(gbuffer.display.width(), gbuffer.display.height());
+    step_ = glm::dvec2(2.0, -2.0) / size / camera.focal;
+    const glm::dvec2 first(gbuffer.data.x0 - gbuffer.display.x0 + 0.5, gbuffer.data.y0 - gbuffer.display.y0 + 0.5);
+    origin_ = (glm::dvec2(-1.0, 1.0) - camera.centre) / camera.focal + step_ * first;
+  }
+  // Change per pixel of what is linear, as a part of it; nothing without a normal that faces the eye.
+  std::optional<glm::dvec2> at(int x, int y, double z) const {
+    if (normal_.empty()) return std::nullopt;
+    const glm::dvec3 normal = viewFromWorld_ * glm::dvec3(normal_.at(x, y));
+    const double length = glm::length(normal);
+    if (!(length > 0.5) || !std::isfinite(length)) return std::nullopt;
+    const glm::dvec2 place = origin_ + step_ * glm::dvec2(x, y);
+    const glm::dvec3 ray = orthographic_ ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(place, -1.0);
+    const double facing = -glm::dot(normal, ray);
+    if (facing < kGrazing * length * glm::length(ray)) return std::nullopt;
+    const glm::dvec2 slope = glm::dvec2(normal) * step_ / -facing;
+    return orthographic_ ? -slope / z : slope;
+  }
+
+ private:
+  const Image<glm::vec3>& normal_;
+  glm::dmat3 viewFromWorld_;
+  bool orthographic_;
+  glm::dvec2 origin_, step_;
+};
+
+// What is linear, of all pixels; NaN where nothing was hit.
+Image<double> linearOf(const Image<float>& viewZ, bool orthographic) {
+  Image<double> linear(viewZ.width(), viewZ.height());
+  tbb::parallel_for(0, viewZ.height(), [&](int y) {
+    for (int x = 0; x < viewZ.width(); ++x) {
+      const auto z = static_cast<double>(viewZ.at(x, y));
+      linear.at(x, y) = !std::isfinite(z) ? kNone : orthographic ? z : 1.0 / z;
+    }
+  });
+  return linear;
+}
+
+Line lineThrough(const Image<double>& linear, int x, int y, int dx, int dy, double rounding) {
+  Line line{};
+  line.rounding = rounding;
+  const double scale = 1.0 / linear.at(x, y);
+  for (int k = -kReach; k <= kReach; ++k) {
+    const int u = x + k * dx, v = y + k * dy;
+    const bool inside = u >= 0 && v >= 0 && u < linear.width() && v < linear.height();
+    line.value[k + kReach] = inside ? linear.at(u, v) * scale : kNone;
+  }
+  return line;
+}
+
+}  // namespace
+
+DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
+    : gbuffer_(gbuffer),
+      orthographic_(camera.orthographic),
+      slopes_(gbuffer.viewZ.width(), gbuffer.viewZ.height(), glm::vec2(0.0f)) {
+  const Image<double> linear = linearOf(gbuffer.viewZ, orthographic_);
+  const NormalSlopes normals(gbuffer, camera);
+  // A second difference holds four values, each rounded by half of the precision at most.
+  const double rounding = 2.0 * static_cast<double>(gbuffer.depthPrecision);
+  tbb::parallel_for(0, linear.height(), [&](int y) {
+    for (int x = 0; x < linear.width(); ++x) {
+      if (std::isnan(linear.at(x, y))) continue;
+      for (const int axis : {0, 1}) {
+        const Line line = lineThrough(linear, x, y, 1 - axis, axis, rounding);
+        std::optional<double> slope = straightSlope(line);
+        if (!slope) slope = curvedSlope(line);
+        if (!slope)
+          if (const auto byNormal = normals.at(x, y, static_cast<double>(gbuffer.viewZ.at(x, y))))
+            slope = (*byNormal)[axis];
+        slopes_.at(x, y)[axis] = static_cast<float>(slope ? *slope : pairSlope(line));
+      }
+    }
+  });
+}
+
+DepthPlane DepthPlanes::at(int x, int y) const {
+  const glm::dvec2 slope(slopes_.at(x, y));
+  return {static_cast<double>(gbuffer_.viewZ.at(x, y)), slope.x, slope.y, orthographic_};
+}
+
+void DepthPlanes::depthAt(glm::dvec2 sample, Image<float>& viewZ) const {
+  const glm::dvec2 offset = sample - 0.5;
+  tbb::parallel_for(0, viewZ.height(), [&](int y) {
+    for (int x = 0; x < viewZ.width(); ++x) {
+      const float z = gbuffer_.viewZ.at(x, y);
+      viewZ.at(x, y) = std::isfinite(z) ? static_cast<float>(at(x, y).z(offset.x, offset.y)) : z;
+    }
+  });
+}
+
+}  // namespace pellucid

@@ -1,0 +1,146 @@
+// Layers that lie on an opaque surface are in front of it, and what lies behind it is hidden, wherever in the pixel a
+// pass samples: by every method, at any tilt and distance, as far as the depth's precision tells them apart.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "composite/pipeline/compositor.h"
+#include "gbuffer/opaque_io.h"
+#include "tests/pipeline/shot_files.h"
+#include "tests/support/program.h"
+#include "tests/support/shots.h"
+
+namespace pellucid {
+namespace {
+
+using namespace test;
+
+constexpr int kSize = 24;
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+constexpr glm::dvec3 kColour{0.2, 0.4, 0.6};
+
+struct Wall {
+  double tilt, distance;  // degrees about an upright axis; metres on the camera's axis
+  bool half;
+  double precision() const { return half ? 0x1p-10 : 0x1p-20; }
+};
+
+// The picture of the wall, or of nothing at all, as the camera of writeGlb() sees it.
+void writeWall(const std::string& path, const Wall& wall, bool there) {
+  const double t = wall.tilt * M_PI / 180.0;
+  Image<float> z(kSize, kSize);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const double across = (x + 0.5) / kSize - 0.5, facing = std::cos(t) - std::sin(t) * across;
+      z.at(x, y) = there && facing > 0.0 ? static_cast<float>(wall.distance * std::cos(t) / facing) : kNothing;
+    }
+  const auto plane = [](double value) { return Image<float>(kSize, kSize, static_cast<float>(value)); };
+  const Window window{0, 0, kSize, kSize};
+  writeLayers(path, window, window,
+              {{"", {{"R", plane(kColour.r)}, {"G", plane(kColour.g)}, {"B", plane(kColour.b)}, {"Z", z}}}}, {},
+              nullptr, wall.half);
+}
+
+// A square on the wall; `scale` moves it along the eye's rays.
+void writeDecal(const std::string& path, const Wall& wall, double scale, const nlohmann::json& material) {
+  const double t = wall.tilt * M_PI / 180.0, s = 0.4 * wall.distance;
+  const glm::dvec3 across(std::cos(t), 0.0, -std::sin(t)), up(0.0, 1.0, 0.0);
+  const auto put = [&](const glm::dvec3& v) {
+    const glm::dvec3 scaled = v * scale;
+    return std::array<float, 3>{static_cast<float>(scaled.x), static_cast<float>(scaled.y),
+                                static_cast<float>(scaled.z)};
+  };
+  writeGlb(path, {Quad{put(glm::dvec3(0.0, 0.0, -wall.distance) - s * (across + up)), put(2.0 * s * across),
+                       put(2.0 * s * up), material}});
+}
+
+class Contact : public ::testing::Test {
+ protected:
+  void SetUp() override { folder = freshFolder("pipeline-contact"); }
+  Image<glm::vec4> picture(bool there, double scale, const Wall& wall, const std::string& method, int passes,
+                           bool low = false) {
+    nlohmann::json material = unlit(1.0f, 0.5f, 0.25f, 0.5f);
+    if (low) material["extras"] = {{"pellucid", {{"lowResolution", true}}}};
+    writeWall(folder + "/wall.exr", wall, there);
+    writeDecal(folder + "/decal.glb", wall, scale, material);
+    Request request = requestOf(folder + "/wall.exr", folder + "/decal.glb");
+    request.method = method;
+    request.paint = paintOf(method);
+    if (auto* samples = std::get_if<PaintSamples>(&request.paint)) samples->settings.samples = 64;
+    request.passes = passes;
+    return run(request);
+  }
+  static Image<glm::vec4> run(const Request& request) {
+    Compositor compositor(request);
+    return compositor.run(request).picture.rgba;
+  }
+  static double difference(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      largest = std::max(largest, static_cast<double>(glm::length(glm::vec3(a[i] - b[i]))));
+    return largest;
+  }
+  // On the wall as before nothing, to the bit; behind it not at all.
+  void expectContact(const Wall& wall, const std::string& method, int passes, bool low = false) {
+    SCOPED_TRACE(testing::Message() << wall.tilt << " degrees, " << wall.distance << " m, half " << wall.half << ", "
+                                    << method << ", --aa " << passes);
+    const Image<glm::vec4> on = picture(true, 1.0, wall, method, passes, low);
+    EXPECT_EQ(difference(on, picture(false, 1.0, wall, method, passes, low)), 0.0);
+    const Image<glm::vec4> behind = picture(true, 1.0 + 2.0 * wall.precision(), wall, method, passes, low);
+    writeGlb(folder + "/decal.glb", {Quad{{0, 0, 9}, {1, 0, 0}, {0, 1, 0}, unlit(1, 1, 1, 0.5f)}});
+    Request none = requestOf(folder + "/wall.exr", folder + "/decal.glb");
+    EXPECT_EQ(difference(behind, run(none)), 0.0);
+    EXPECT_GT(difference(on, behind), 0.1) << "there is something to see";
+  }
+  std::string folder;
+};
+
+TEST_F(Contact, AtAnyTiltAndDistance) {
+  for (const double tilt : {0.0, 30.0, 60.0, 80.0})
+    for (const double distance : {0.05, 5000.0})
+      for (const bool half : {false, true}) expectContact({tilt, distance, half}, "over", 8);
+}
+
+TEST_F(Contact, WithAnyNumberOfPasses) {
+  for (const int passes : {1, 2, 3, 16, 64}) expectContact({-50.0, 5.0, true}, "over", passes);
+}
+
+TEST_F(Contact, ByEveryMethod) {
+  for (const char* method : {"phenomenological", "weighted", "average", "sum", "mlab:4", "moments:4", "wavelet:2",
+                             "front+tail", "stochastic"})
+    expectContact({70.0, 5.0, false}, method, 8);
+}
+
+TEST_F(Contact, ByEveryRoute) {
+  const Wall wall{70.0, 5.0, false};
+  const auto each = [&](Request& request, int route) {
+    request.passes = 8;
+    if (route == 0) request.tier = Tier::exact;
+    if (route == 1) request.tier = Tier::published;
+    if (route == 2) request.paint = PaintSystems{};
+    if (route == 3) request.paint = PaintWithin{0.01};
+    if (route == 4) {
+      request.paint = PaintSamples{};
+      std::get<PaintSamples>(request.paint).onDevice = true;
+    }
+  };
+  for (int route = 0; route < 5; ++route) {
+    SCOPED_TRACE(route);
+    Image<glm::vec4> shown[3];
+    for (int k = 0; k < 3; ++k) {
+      writeWall(folder + "/wall.exr", wall, k != 1);
+      writeDecal(folder + "/decal.glb", wall, k == 2 ? 1.0 + 2.0 * wall.precision() : 1.0,
+                 unlit(1.0f, 0.5f, 0.25f, 0.5f));
+      Request request = requestOf(folder + "/wall.exr", folder + "/decal.glb");
+      each(request, route);
+      shown[k] = run(request);
+    }
+    EXPECT_EQ(difference(shown[0], shown[1]), 0.0);
+    for (std::size_t i = 0; i < shown[2].size(); ++i)
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(shown[2][i][c], static_cast<float>(kColour[c]));
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
