@@ -45,10 +45,11 @@ std::optional<double> straightSlope(const Line& line) {
   return (line.at(longer) - 1.0) / longer;
 }
 
-// On curved surfaces: where the slope changes by less than half of itself, to both sides or to one.
+// On curved surfaces: where the slope changes by less than a quarter of itself across the pixel, or less than half to
+// one side of it.
 std::optional<double> curvedSlope(const Line& line) {
   const double steepest = std::max(std::abs(line.at(1) - 1.0), std::abs(line.at(-1) - 1.0));
-  if (line.bend(0) <= 0.5 * steepest) return 0.5 * (line.at(1) - line.at(-1));
+  if (line.bend(0) <= 0.25 * steepest) return 0.5 * (line.at(1) - line.at(-1));
   const double bends[2] = {line.bend(1), line.bend(-1)};
   const double least = std::fmin(bends[0], bends[1]);  // NaN where there is no side
   const int side = bends[0] == least ? 1 : -1;

@@ -210,7 +210,7 @@ OitPlanes planesOf(const ExrPart& part, const std::string& path, RimPlanes* rims
   return planes;
 }
 
-constexpr const char* kPass = "pellucid:pass";
+constexpr const char *kPass = "pellucid:pass", *kEdges = "pellucid:edges";
 constexpr const char* kScatter = ", what scatters";  // after the pass, of a part with PassPlanes::scatter
 
 bool isScatter(const ExrPart& part) {
@@ -248,6 +248,7 @@ Image<glm::vec4> relitOf(const ExrPart& part, const std::string& path) {
 NewExr fileOf(const PassPlanes& pass) {
   NewExr file = fileOf(pass.planes, pass.rims);
   addRelit(pass.relit, file);
+  file.attributes[kEdges] = pass.edges ? "resolve" : "off";
   return file;
 }
 
@@ -307,6 +308,7 @@ std::vector<PassPlanes> readPasses(const std::string& path) {
     PassPlanes pass;
     pass.planes = planesOf(part, path, &pass.rims);
     pass.relit = relitOf(part, path);
+    pass.edges = part.text(kEdges).value_or("off") == "resolve";
     if (!passes.empty() && pass.planes.data != passes[0].planes.data)
       throw MeaningError(
           fmt::format("{}: part {}: found another data window than the first part's, expected the same", path, i));

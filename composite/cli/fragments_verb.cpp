@@ -51,6 +51,7 @@ void addFragments(CLI::App& app) {
   RenderVerb what;
   what.weighs = false;
   what.passes = false;
+  what.edges = false;
   what.bends = false;
   what.resolves = false;
   flags->render.addTo(*verb, what);

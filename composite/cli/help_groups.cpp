@@ -33,6 +33,7 @@ const std::vector<HelpRow> kRows{
     {"--layer-depth", kInput, "CHANNEL"},
     {"--indirect", kInput, "LAYER"},
     {"--layer", kInput, "NAME"},
+    {"--edges", kPicture, ""},
     {"--beauty", kPicture, "LAYER"},
     {"--view", kPicture, "NAME"},
     {"--depth", kPicture, "CHANNEL"},

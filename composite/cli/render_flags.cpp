@@ -15,6 +15,7 @@ constexpr NamedLayer kLayers[] = {
     {"transparent", LayerName::transparent},
     {"transmission", LayerName::transmission},
     {"depth", LayerName::depth},
+    {"edges", LayerName::edges},
     {"D", LayerName::diffusion},
     {"delta", LayerName::delta},
     {"weight", LayerName::weight},
@@ -59,7 +60,7 @@ void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
   std::vector<std::string> names;
   for (const NamedLayer& layer : kLayers) names.emplace_back(layer.text);
   verb.add_option("--layers", layers,
-                  "Layers to add: transparent, transmission, depth; for debugging D, delta, weight, count")
+                  "Layers to add: transparent, transmission, depth; for debugging edges, D, delta, weight, count")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
 }
@@ -81,6 +82,12 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
     verb.add_option("--aa", passes, "Jittered passes, averaged; 1 samples pixel centres")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
+  if (what.edges)
+    edgesOption_ = verb.add_option("--edges", edges,
+                                   "Pixels that the renderer filtered over an edge: resolve takes them apart into "
+                                   "their two surfaces, which --aa composites at their own depths; off: one surface")
+                       ->check(CLI::IsMember({"resolve", "off"}))
+                       ->capture_default_str();
   if (what.listsToo && what.weighs) stochastic.addTo(verb);
   if (what.listsToo && what.weighs && what.precision) addWays(verb, *this);
   if (!what.resolves) return;
@@ -93,6 +100,7 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
 void RenderFlags::paintInto(Request& request) const {
   method.into(request);
   request.passes = passes;
+  if (edgesOption_ && edgesOption_->count() > 0) request.edges = edges == "resolve" ? EdgeRule::resolve : EdgeRule::off;
   shadow.into(request);
   stochastic.into(request);
   const bool sums = paintsBy<PaintSums>(request);

@@ -19,6 +19,7 @@ struct RenderVerb {
   bool listsToo = true;   // methods that have no sums
   bool precision = true;  // one tier
   bool passes = true;     // --aa with one number
+  bool edges = true;      // --edges
   bool bends = true;      // --refract and --diffusion
   bool resolves = true;   // lookups, --resolve, --self-modulation and --layers
   bool keepsRimsApart = false;
@@ -26,7 +27,7 @@ struct RenderVerb {
 };
 
 struct RenderFlags {
-  std::string opaque, systems = "off";
+  std::string opaque, systems = "off", edges = "resolve";
   std::vector<std::string> inputs, layers;
   ReadFlags read;
   SceneFlags scene;
@@ -47,7 +48,7 @@ struct RenderFlags {
 
  private:
   void paintInto(Request& request) const;
-  const CLI::Option* lowResolutionOption_ = nullptr;
+  const CLI::Option *lowResolutionOption_ = nullptr, *edgesOption_ = nullptr;
 };
 
 std::vector<LayerName> layerNames(const std::vector<std::string>& layers);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -34,7 +35,8 @@ Paint paintOf(const std::string& name, int passes, const StochasticFlags& flags)
 
 void study(const StudyFlags& flags) {
   const Threads threads(flags.run.threads);
-  const Request base = flags.render.request();
+  Request base = flags.render.request();
+  base.passes = *std::max_element(flags.passes.begin(), flags.passes.end());
   std::vector<Tier> tiers;
   for (const std::string& precision : flags.precisions) tiers.push_back(tierOf(precision));
   const std::vector<StudyCandidate> candidates = studyCandidates(

@@ -186,8 +186,8 @@ StochasticSums StochasticMean::sampled(int pass, glm::ivec2 pixel, std::vector<M
 }
 
 void StochasticMean::put(std::size_t place, const StochasticSums& sums, const glm::vec4& solid, float frontZ,
-                         std::size_t at, Veil& veil) {
-  const auto share = static_cast<float>(1.0 / passes_);
+                         float weight, std::size_t at, Veil& veil) {
+  const float share = static_cast<float>(1.0 / passes_) * weight;
   const bool hasSolid = std::isfinite(solid.a);
   light_[place] += share * glm::vec3(sums.light);
   unit_[place] += share * glm::vec3(sums.unit);
@@ -200,7 +200,8 @@ void StochasticMean::put(std::size_t place, const StochasticSums& sums, const gl
   veil.touched[at] = 1;
 }
 
-void StochasticMean::add(int pass, const FragmentLists& lists, const Window& data, Veil& veil) {
+void StochasticMean::add(int pass, const FragmentLists& lists, const Window& data, Veil& veil,
+                         const Image<float>* weights) {
   const int left = lists.window.x0 - data.x0, top = lists.window.y0 - data.y0, width = lists.window.width();
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     std::vector<MethodLayer> layers;
@@ -213,7 +214,8 @@ void StochasticMean::add(int pass, const FragmentLists& lists, const Window& dat
         const StochasticSums sums = sampled(pass, {lists.window.x0 + x, lists.window.y0 + y}, layers);
         const std::size_t at = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(light_.width()) +
                                static_cast<std::size_t>(left + x);
-        put(at, sums, solid, layers.empty() ? solid.a : layers.front().record->z, at, veil);
+        put(at, sums, solid, layers.empty() ? solid.a : layers.front().record->z, weights ? (*weights)[at] : 1.0f, at,
+            veil);
       }
   });
 }
@@ -226,12 +228,12 @@ void StochasticMean::add(int pass, const HeldOutRow& row, Veil& veil) {
       layersOf(row.lists, entry, solid.a, layers);
       if (layers.empty() && !std::isfinite(solid.a)) continue;
       const StochasticSums sums = sampled(pass, row.pixel[entry], layers);
-      put(row.place[entry], sums, solid, layers.empty() ? solid.a : layers.front().record->z, entry, veil);
+      put(row.place[entry], sums, solid, layers.empty() ? solid.a : layers.front().record->z, 1.0f, entry, veil);
     }
   });
 }
 
-void StochasticMean::add(const StochasticPlanes& planes, Veil& veil) {
+void StochasticMean::add(const StochasticPlanes& planes, Veil& veil, const Image<float>* weights) {
   for (std::size_t i = 0; i < planes.solid.size(); ++i) {
     const glm::vec4& solid = planes.solid[i];
     const float frontZ = planes.frontZ[i];
@@ -242,7 +244,7 @@ void StochasticMean::add(const StochasticPlanes& planes, Veil& veil) {
     sums.added = planes.added[i];
     sums.empty = planes.empty[i];
     sums.beta = planes.beta[i];
-    put(i, sums, solid, frontZ, i, veil);
+    put(i, sums, solid, frontZ, weights ? (*weights)[i] : 1.0f, i, veil);
   }
 }
 

@@ -73,11 +73,12 @@ class StochasticMean {
   StochasticMean(const DeepOpaque& opaque, const StochasticSettings& settings, int passes);
   // Adds pass `pass`. Writes transmission, solids, front depth and touched of the lists' window to `veil`, whose light
   // still lacks the layers'.
-  void add(int pass, const FragmentLists& lists, const Window& data, Veil& veil);
+  //   weights  of the pass in each pixel's mean, 1 for an equal one; null: equal everywhere
+  void add(int pass, const FragmentLists& lists, const Window& data, Veil& veil, const Image<float>* weights = nullptr);
   // The same of the row of a deep picture; `veil` is the row's. Samples of a pixel share their masks.
   void add(int pass, const HeldOutRow& row, Veil& veil);
   // The same, sampled already.
-  void add(const StochasticPlanes& planes, Veil& veil);
+  void add(const StochasticPlanes& planes, Veil& veil, const Image<float>* weights = nullptr);
   // Adds the layers' light to the mean of those veils.
   void finish(Veil& mean) const;
   // Samples of all pixels of lists that hold a layer, and those pixels, of all passes.
@@ -89,8 +90,8 @@ class StochasticMean {
   StochasticSums sampled(int pass, glm::ivec2 pixel, std::vector<MethodLayer>& layers);
   //   place   in the sums of all passes
   //   at      in the veil
-  void put(std::size_t place, const StochasticSums& sums, const glm::vec4& solid, float frontZ, std::size_t at,
-           Veil& veil);
+  void put(std::size_t place, const StochasticSums& sums, const glm::vec4& solid, float frontZ, float weight,
+           std::size_t at, Veil& veil);
 
   StochasticSettings settings_;
   int passes_;

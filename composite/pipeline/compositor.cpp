@@ -120,6 +120,18 @@ const DepthPlanes* Compositor::depthPlanes(int passes) {
   return depthPlanes_.get();
 }
 
+const std::vector<EdgePixel>& Compositor::edges() {
+  if (!edges_) edges_ = journal_.time("edges", [&] { return edgePixels(shot_->opaque.gbuffer, *depthPlanes(2)); });
+  return *edges_;
+}
+
+std::unique_ptr<EdgePasses> Compositor::edgePasses(const Plan& plan) {
+  if (!plan.edges) return nullptr;
+  std::vector<glm::dvec2> samples;
+  for (int i = 0; i < plan.passes; ++i) samples.push_back(samplePass(plan.pass, i, plan.passes).sample);
+  return std::make_unique<EdgePasses>(edges(), std::move(samples));
+}
+
 const Lighting& Compositor::lightOf(const Request& request) {
   if (!lighting_ || !sameLight(lit_, request)) {
     lighting_ = lightShot(request, *shot_, device_, journal_);
@@ -150,18 +162,23 @@ Compositor::Run Compositor::prepare(const Request& request) {
 
 Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal,
                        RunCounts& counts) {
-  PassPicture moving(run.lighting->picture, depthPlanes(plan.passes), triangles(), shot_->camera);
+  const std::unique_ptr<EdgePasses> edges = edgePasses(plan);
+  PassPicture moving(run.lighting->picture, depthPlanes(plan.passes), edges.get(), triangles(), shot_->camera);
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
   VeilMean mean;
   for (int i = 0; i < plan.passes; ++i) {
     const PassSettings sample = samplePass(pass, i, plan.passes);
-    moving.moveTo(sample.sample);
+    moving.moveTo(sample.sample, i);
     Veil veil = painter->paint(sample, i);
-    journal.time("average", [&] { mean.add(std::move(veil)); });
+    journal.time("average", [&] {
+      if (edges) edges->weigh(i, veil);
+      mean.add(std::move(veil));
+    });
   }
   return journal.time("average", [&] {
     Veil veil = mean.finish();
+    if (edges) edges->finish(veil);
     painter->finish(veil);
     return veil;
   });
@@ -187,6 +204,8 @@ Result Compositor::run(const Request& request) {
   }
   result.layers = veilLayers(request.layers, result.veil);
   result.layers.insert(result.layers.end(), run.lighting->shadows.layers.begin(), run.lighting->shadows.layers.end());
+  if (asks(request.layers, LayerName::edges))
+    result.layers.push_back(edgesLayer(gbuffer, run.plan.edges ? &edges() : nullptr));
   if (wantsPlanes(request.layers)) {
     RunCounts unused;
     const Plan sums = sumsPlanOf(run.plan, facts_);
@@ -213,14 +232,15 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
   RunCounts counts;
   Plan sums = sumsPlanOf(run.plan, facts_);
   sums.heldOut = run.plan.heldOut;
-  PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), triangles(), shot_->camera);
+  const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), edges.get(), triangles(), shot_->camera);
   const GBuffer& moved = *moving.picture().gbuffer;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, i, run.plan.passes);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
     sample.normalisation = sums.pass.normalisation;
-    moving.moveTo(sample.sample);
+    moving.moveTo(sample.sample, i);
     PassPlanes made;
     if (others.empty()) {
       made = passPlanes(sums, sample, i, run, moving.picture(), request, counts);
@@ -232,6 +252,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
       others.addTo(made.planes, i);
     }
     made.planes.info.method = made.scatter.info.method = run.plan.method;
+    made.edges = run.plan.edges;
     if (i == 0) made.relit = relitPicture(*run.lighting);
     shows = shows || anyLayers(made.planes);
     each(std::move(made));

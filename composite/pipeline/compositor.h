@@ -2,9 +2,11 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "composite/edges.h"
 #include "composite/pipeline/lighting.h"
 #include "composite/pipeline/painter.h"
 #include "composite/pipeline/plan.h"
@@ -56,6 +58,8 @@ class Compositor {
   TransparentPass* triangles();
   // Of the picture's depth, for passes away from pixel centres; null for a deep picture, whose samples have no planes.
   const DepthPlanes* depthPlanes(int passes);
+  const std::vector<EdgePixel>& edges();                     // of the picture
+  std::unique_ptr<EdgePasses> edgePasses(const Plan& plan);  // null where the plan takes no edge apart
   Run prepare(const Request& request);
   PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, int pass, const Run& run,
                         const LitPicture& picture, const Request& request, RunCounts& counts);
@@ -68,6 +72,7 @@ class Compositor {
   mutable bool knowsDepths_ = false;
   std::unique_ptr<TransparentPass> triangles_;
   std::unique_ptr<DepthPlanes> depthPlanes_;
+  std::optional<std::vector<EdgePixel>> edges_;
   // The light of the last request; requests that differ in nothing that lights share it.
   std::unique_ptr<Lighting> lighting_;
   Request lit_;

@@ -28,7 +28,7 @@ DepthSpan layerSpanOf(const std::unique_ptr<DeepSource>& file, const GBuffer& gb
   LayerSources source(nullptr);
   source.join(deepFiles({&file, 1}));
   const PassSettings settings;
-  source.each({settings, {&gbuffer, nullptr}, VolumeRule::midDepth}, [&](const FragmentLists& lists) {
+  source.each({settings, {&gbuffer, &gbuffer, nullptr}, VolumeRule::midDepth}, [&](const FragmentLists& lists) {
     for (const Fragment& fragment : lists.fragments) span.add(static_cast<double>(fragment.z));
   });
   return span;

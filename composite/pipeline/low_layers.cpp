@@ -45,7 +45,9 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
                                    PassStatistics& statistics) {
   const GBuffer& gbuffer = *context.picture.gbuffer;
   TransparentPass& triangles = *context.sources.triangles();
+  triangles.over(*context.picture.centres, context.shot.camera);  // solids are drawn at pixel centres
   const Image<glm::vec4> solids = solidsOf(triangles, fullResolutionPart(context.plan, sample));
+  triangles.over(gbuffer, context.shot.camera);
   const LowView view = lowViewOf(gbuffer, solids, context.shot.camera, context.plan.lowResolution);
   const PassSettings part = lowResolutionPart(sample);
   const Window& texels = view.gbuffer.data;

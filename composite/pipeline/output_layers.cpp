@@ -63,6 +63,25 @@ std::vector<ExtraLayer> veilLayers(const std::vector<LayerName>& layers, const V
   return result;
 }
 
+bool asks(const std::vector<LayerName>& layers, LayerName name) {
+  return std::find(layers.begin(), layers.end(), name) != layers.end();
+}
+
+ExtraLayer edgesLayer(const GBuffer& gbuffer, const std::vector<EdgePixel>* edges) {
+  Image<float> share(gbuffer.data.width(), gbuffer.data.height(), 0.0f), nearer = gbuffer.viewZ, farther = nearer;
+  if (edges)
+    for (const EdgePixel& edge : *edges) {
+      share.at(edge.x, edge.y) = static_cast<float>(edge.share);
+      nearer.at(edge.x, edge.y) = static_cast<float>(edge.nearer.centre);
+      farther.at(edge.x, edge.y) = static_cast<float>(edge.farther.centre);
+    }
+  ExtraLayer layer{"edges", {}};
+  layer.channels.emplace_back("share", std::move(share));
+  layer.channels.emplace_back("nearer.Z", std::move(nearer));
+  layer.channels.emplace_back("farther.Z", std::move(farther));
+  return layer;
+}
+
 bool wantsPlanes(const std::vector<LayerName>& layers) {
   return std::any_of(layers.begin(), layers.end(), [](LayerName name) {
     return name == LayerName::diffusion || name == LayerName::delta || name == LayerName::weight ||

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "composite/edges.h"
 #include "composite/pipeline/request.h"
 #include "composite/resolve.h"
 #include "composite/veil.h"
@@ -14,6 +15,11 @@ namespace pellucid {
 ExtraLayer beautyLayer(const Image<glm::vec4>& rgba);  // R, G, B, A without a layer's name
 // transparent, transmission and depth, of those that were asked for.
 std::vector<ExtraLayer> veilLayers(const std::vector<LayerName>& layers, const Veil& veil);
+bool asks(const std::vector<LayerName>& layers, LayerName name);
+// Where pixels were taken apart: the nearer surface's share and both depths at the pixel's centre. Elsewhere the share
+// is 0 and both depths are the pixel's.
+//   edges  null: nowhere
+ExtraLayer edgesLayer(const GBuffer& gbuffer, const std::vector<EdgePixel>* edges);
 // The others show planes of the transparent pass, at pixel centres.
 bool wantsPlanes(const std::vector<LayerName>& layers);
 // The opaque picture with another beauty in it and more layers: a flat one keeps what is not touched, of a deep one

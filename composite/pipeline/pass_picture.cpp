@@ -2,21 +2,28 @@
 
 namespace pellucid {
 
-PassPicture::PassPicture(const LitPicture& centres, const DepthPlanes* planes, TransparentPass* triangles,
-                         const Camera& camera)
-    : centres_(centres), planes_(planes), triangles_(triangles), camera_(camera), picture_(centres) {
+PassPicture::PassPicture(const LitPicture& centres, const DepthPlanes* planes, const EdgePasses* edges,
+                         TransparentPass* triangles, const Camera& camera)
+    : centres_(centres), planes_(planes), edges_(edges), triangles_(triangles), camera_(camera), picture_(centres) {
   if (!planes_) return;
   moved_ = *centres.gbuffer;
   picture_.gbuffer = &moved_;
+  if (!edges_ || edges_->empty()) return;
+  passWeight_ = Image<float>(moved_.data.width(), moved_.data.height(), 1.0f);
+  picture_.passWeight = &passWeight_;
 }
 
 PassPicture::~PassPicture() {
   if (planes_ && triangles_) triangles_->over(*centres_.gbuffer, camera_);
 }
 
-void PassPicture::moveTo(glm::dvec2 sample) {
+void PassPicture::moveTo(glm::dvec2 sample, int pass) {
   if (!planes_) return;
   planes_->depthAt(sample, moved_.viewZ);
+  if (edges_) {
+    edges_->depthAt(pass, moved_.viewZ);
+    if (picture_.passWeight) edges_->weightAt(pass, passWeight_);
+  }
   if (triangles_) triangles_->over(moved_, camera_);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "composite/edges.h"
 #include "composite/pipeline/lighting.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/depth_plane.h"
@@ -15,22 +16,26 @@ class PassPicture {
  public:
   // The others must outlive this.
   //   planes     of the picture's depth; null leaves it as it is
+  //   edges      pixels of two surfaces, of which a pass sees one; null: none
   //   triangles  drawn over this picture while it lives; null: none
-  PassPicture(const LitPicture& centres, const DepthPlanes* planes, TransparentPass* triangles, const Camera& camera);
+  PassPicture(const LitPicture& centres, const DepthPlanes* planes, const EdgePasses* edges, TransparentPass* triangles,
+              const Camera& camera);
   ~PassPicture();
   PassPicture(const PassPicture&) = delete;
   PassPicture& operator=(const PassPicture&) = delete;
 
-  void moveTo(glm::dvec2 sample);
+  void moveTo(glm::dvec2 sample, int pass);
   // Of the pass that it was moved to; always the same object.
   const LitPicture& picture() const { return picture_; }
 
  private:
   const LitPicture& centres_;
   const DepthPlanes* planes_;
+  const EdgePasses* edges_;
   TransparentPass* triangles_;
   const Camera& camera_;
   GBuffer moved_;
+  Image<float> passWeight_;
   LitPicture picture_;
 };
 

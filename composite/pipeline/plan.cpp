@@ -132,6 +132,9 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   plan.deepFiles = facts.deepFiles > 0;
   plan.fog = request.fog.on();
   plan.passes = request.passes;
+  plan.edges = request.edges.value_or(EdgeRule::resolve) == EdgeRule::resolve && plan.passes > 1 && !plan.heldOut;
+  if (plan.heldOut && request.edges == EdgeRule::resolve)
+    plan.notes.emplace_back("--edges resolve: a deep picture holds the surfaces of its edges apart already");
   plan.lowResolution = lowResolutionOf(request, facts);
   chooseSums(plan);
   keepOffDevice(plan, facts);
@@ -198,6 +201,7 @@ std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
                             plan.route == Route::drawnSums || plan.route == Route::foldedSums
                                 ? plan.resolvesOnDevice ? "resolved on the device" : "resolved on the CPU"
                                 : "composited on the CPU"));
+  say("edges", plan.edges ? "taken apart into their two surfaces" : "as pixels of one surface");
   say("memory", fmt::format("about {} MiB besides the picture", plan.bytes >> 20));
   for (const std::string& note : plan.notes) say("note", note);
   return lines;

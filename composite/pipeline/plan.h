@@ -35,6 +35,7 @@ struct Plan {
   bool deepFiles = false;  // among the layers
   bool fog = false;
   int passes = 1;                  // jittered
+  bool edges = false;              // filtered edges of the picture are taken apart
   int lowResolution = 1;           // pixels per texel of marked materials
   std::uint64_t bytes = 0;         // held at once besides the picture, about
   std::vector<std::string> notes;  // what was left out or done otherwise than asked, and why: one sentence each

@@ -104,6 +104,8 @@ const std::vector<Refusal>& refusals() {
       {"--resolve", "gl", "--method {}", "cpu", "it has no sums to resolve",
        [](const Request& r) { return r.resolveOnDevice && !hasSums(r); }},
       {"--samples", "a number", "--aa", "a multiple of --aa", "every pass holds as many samples", tracesSamples},
+      {"--edges", "resolve", "--aa 1", "off, or --aa 2 and more", "one pass sees one surface of a pixel",
+       [](const Request& r) { return r.edges == EdgeRule::resolve && r.passes == 1; }},
       {"--gather", "exact", "--diffusion-kernel disc", "fast", "the disc has one gather, and its taps are few",
        [](const Request& r) { return r.lookup.exact && r.lookup.kernel == shading::PLD_DIFFUSE_DISC; }},
       {"--layers", "depth, weight or count", "--precision published", "float or exact", "its targets do not hold them",
@@ -126,6 +128,7 @@ void dropUnread(Request& request) {
     sums.weightFrom.clear();
     sums.fitWeight = false;
   }
+  if (request.passes == 1) request.edges.reset();
   const bool published = request.tier == Tier::published;
   if (!normalises(request) || (published && sums.normalisation == shading::PLD_NORMALISE_SPECTRAL))
     sums.normalisation.reset();

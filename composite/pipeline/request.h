@@ -125,7 +125,10 @@ struct LowResolutionRequest {
 };
 
 // Extra layers of the output.
-enum class LayerName { transparent, transmission, depth, diffusion, delta, weight, count };
+enum class LayerName { transparent, transmission, depth, edges, diffusion, delta, weight, count };
+
+// Pixels whose colour is filtered over an edge of the opaque picture: taken apart into its two surfaces, or left as one.
+enum class EdgeRule { resolve, off };
 
 struct Request {
   ShotRequest shot;
@@ -134,6 +137,7 @@ struct Request {
   Tier tier = Tier::float32;
   SumsRequest sums;
   int passes = 1;  // jittered, averaged
+  std::optional<EdgeRule> edges;  // else resolve, where several passes can be dealt to two surfaces
   TextureFilter filter = TextureFilter::mipmap;
   MaskEdge mask = MaskEdge::smooth;
   ScatterSettings scatter;

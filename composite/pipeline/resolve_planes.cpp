@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "composite/antialias.h"
 #include "composite/deep/placed_sums.h"
+#include "composite/edges.h"
 #include "composite/occluders.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
@@ -90,6 +93,10 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
             fmt::format("{}: found shadows on the picture as in the planes before, expected one such "
                         "file: light that is hidden twice does not add; accumulate them together",
                         request.planes[k]));
+      if (more[0].edges != passes[0].edges)
+        throw MeaningError(fmt::format("{}: found --edges {}, expected {} of {}", request.planes[k],
+                                       more[0].edges ? "resolve" : "off", passes[0].edges ? "resolve" : "off",
+                                       request.planes[0]));
       if (!more[0].relit.empty()) passes[0].relit = more[0].relit;
       for (std::size_t i = 0; i < passes.size(); ++i) {
         const double factor = referenceFactor(more[i].planes.info.weight, passes[i].planes.info.weight);
@@ -127,6 +134,20 @@ void checkPlanes(const PlanesRequest& request, const OitPlanes& planes, const GB
     for (const LayerName name : request.layers)
       if (name == LayerName::depth || name == LayerName::weight || name == LayerName::count)
         throw UsageError("--layers: found depth, weight or count with the published tier, whose targets hold none");
+}
+
+// Of which each pass saw one side; none where they saw whole pixels.
+std::vector<EdgePixel> edgesOf(const std::vector<PassPlanes>& passes, const GBuffer& gbuffer) {
+  if (!passes[0].edges || passes.size() < 2) return {};
+  return edgePixels(gbuffer, DepthPlanes(gbuffer, passes[0].planes.camera));
+}
+
+std::unique_ptr<EdgePasses> dealt(const std::vector<EdgePixel>& edges, std::size_t passes) {
+  if (edges.empty()) return nullptr;
+  std::vector<glm::dvec2> samples;
+  for (std::size_t i = 0; i < passes; ++i)
+    samples.push_back(samplePosition(static_cast<int>(i), static_cast<int>(passes)));
+  return std::make_unique<EdgePasses>(edges, std::move(samples));
 }
 
 ResolveSettings settingsOf(const PlanesRequest& request, const OitPlanes& planes) {
@@ -192,19 +213,26 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   ResolvePass* resolver = resolverFor(request, settings, result.info.method, deep != nullptr, device, journal);
   std::vector<ExtraLayer> ofPlanes;
   if (wantsPlanes(request.layers)) ofPlanes.push_back(planeLayer(request.layers, passes[0].planes));
+  const std::vector<EdgePixel> pixels = journal.time("edges", [&] { return edgesOf(passes, result.opaque.gbuffer); });
+  const std::unique_ptr<EdgePasses> edges = dealt(pixels, passes.size());
   VeilMean mean;
-  for (PassPlanes& pass : passes)
-    mean.add(
+  for (PassPlanes& pass : passes) {
+    Veil veil =
         deep ? journal.time(
                    "resolve",
                    [&] { return resolvePlaces(pass.planes, pass.scatter, settings, request.lookup, *deep, gbuffer); })
-             : veilOfPixels(request, pass, settings, gbuffer, resolver, journal));
+             : veilOfPixels(request, pass, settings, gbuffer, resolver, journal);
+    if (edges) edges->weigh(static_cast<int>(&pass - passes.data()), veil);
+    mean.add(std::move(veil));
+  }
   result.veil = journal.time("average", [&] { return mean.finish(); });
+  if (edges) edges->finish(result.veil);
   result.picture = journal.time("compose", [&] { return compose(result.veil, gbuffer); });
   for (std::size_t i = 0; i < relit.size(); ++i)
     if (relit[i].a > 0.0f) result.picture.touched[i] = 1;
   result.layers = veilLayers(request.layers, result.veil);
   result.layers.insert(result.layers.end(), ofPlanes.begin(), ofPlanes.end());
+  if (asks(request.layers, LayerName::edges)) result.layers.push_back(edgesLayer(result.opaque.gbuffer, &pixels));
   result.device = device.description();
   return result;
 }

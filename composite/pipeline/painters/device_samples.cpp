@@ -32,7 +32,7 @@ class DeviceSamplesPainter : public Painter {
     StochasticPlanes planes = drawSamples(sampler_, sample, settings_, pass, context_.plan.passes, statistics);
     TransparentPass& sums = *context_.sources.triangles();
     if (!sums.scatters(sample)) {
-      mean_.add(planes, veil);
+      mean_.add(planes, veil, context_.picture.passWeight);
     } else {
       PassSettings unlit = sample;  // of these sums only where they bend and spread is read
       unlit.shadows = nullptr;
@@ -43,7 +43,7 @@ class DeviceSamplesPainter : public Painter {
       scattering.solid = planes.solid;
       hideSolids(scattering);
       planes.solid = scattering.solid;
-      mean_.add(planes, veil);
+      mean_.add(planes, veil, context_.picture.passWeight);
       showThrough(Lookups(backdrop, scattering, context_.plan.lookup), veil);
     }
     statistics.bitsPerPixel = stochasticBits(settings_);

@@ -102,7 +102,9 @@ class ListsPainter : public Painter {
 
   void mix(const PassSettings& sample, int pass, const FragmentLists& lists, Veil& veil) {
     const GBuffer& gbuffer = *context_.picture.gbuffer;
-    Mixed mixed{sample, pass, gbuffer.data, &gbuffer.beauty, scatters_ ? &planes_ : nullptr, nullptr};
+    // Where a pass sees one of two surfaces, its background is a part of the pixel's colour that no mixer knows.
+    const Image<glm::vec4>* background = context_.picture.passWeight ? nullptr : &gbuffer.beauty;
+    Mixed mixed{sample, pass, gbuffer.data, background, scatters_ ? &planes_ : nullptr, nullptr};
     if (!context_.plan.heldOut) {
       mixer_->mix(mixed, lists, veil);
       return;

@@ -12,6 +12,7 @@ class SamplesMixer : public Mixer {
       : settings_(settings),
         passes_(context.plan.passes),
         journal_(context.journal),
+        picture_(context.picture),
         mean_(context.plan.heldOut
                   ? std::make_unique<StochasticMean>(*context.picture.deepOpaque, settings, context.plan.passes)
                   : std::make_unique<StochasticMean>(context.picture.gbuffer->data.width(),
@@ -21,7 +22,7 @@ class SamplesMixer : public Mixer {
     if (mixed.row)
       mean_->add(mixed.pass, *mixed.row, veil);
     else
-      mean_->add(mixed.pass, lists, mixed.data, veil);
+      mean_->add(mixed.pass, lists, mixed.data, veil, picture_.passWeight);
   }
   void finish(Veil& mean) override {
     mean_->finish(mean);
@@ -35,6 +36,7 @@ class SamplesMixer : public Mixer {
   StochasticSettings settings_;
   int passes_;
   Journal& journal_;
+  const LitPicture& picture_;             // of the pass that is mixed
   std::unique_ptr<StochasticMean> mean_;  // of all passes: masks are stratified across them
 };
 

@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "composite/edges.h"
+#include "shaders/shading.h"
+
+namespace pellucid {
+
+EdgePasses::EdgePasses(std::vector<EdgePixel> pixels, std::vector<glm::dvec2> samples) : samples_(std::move(samples)) {
+  const auto count = static_cast<int>(samples_.size());
+  std::vector<int> order(samples_.size());
+  std::vector<double> along(samples_.size());
+  edges_.reserve(pixels.size());
+  for (EdgePixel& pixel : pixels) {
+    Edge edge;
+    edge.nearerPasses = std::clamp(static_cast<int>(std::lround(pixel.share * count)), 1, count - 1);
+    for (std::size_t i = 0; i < samples_.size(); ++i) along[i] = glm::dot(samples_[i], pixel.towardsNearer);
+    std::iota(order.begin(), order.end(), 0);
+    const auto precedes = [&](int a, int b) {
+      const double one = along[static_cast<std::size_t>(a)], other = along[static_cast<std::size_t>(b)];
+      return one != other ? one > other : a < b;
+    };
+    std::nth_element(order.begin(), order.begin() + (edge.nearerPasses - 1), order.end(), precedes);
+    edge.seesNearer.assign(samples_.size(), false);
+    for (int i = 0; i < edge.nearerPasses; ++i)
+      edge.seesNearer[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = true;
+    transparentPicture_ = transparentPicture_ || pixel.alpha < 1.0f;
+    edge.pixel = std::move(pixel);
+    edges_.push_back(std::move(edge));
+  }
+}
+
+void EdgePasses::depthAt(int pass, Image<float>& viewZ) const {
+  const auto number = static_cast<std::size_t>(pass);
+  const glm::dvec2 offset = samples_[number] - 0.5;
+  for (const Edge& edge : edges_) {
+    const DepthPlane& plane = edge.seesNearer[number] ? edge.pixel.nearer : edge.pixel.farther;
+    viewZ.at(edge.pixel.x, edge.pixel.y) = static_cast<float>(plane.z(offset.x, offset.y));
+  }
+}
+
+EdgePasses::Part EdgePasses::partOf(const Edge& edge, int pass) const {
+  const bool nearer = edge.seesNearer[static_cast<std::size_t>(pass)];
+  const auto count = static_cast<float>(samples_.size());
+  const float each =
+      count / static_cast<float>(nearer ? edge.nearerPasses : static_cast<int>(samples_.size()) - edge.nearerPasses);
+  const auto share = static_cast<float>(edge.pixel.share);
+  Part part;
+  part.light = each * (nearer ? share : 1.0f - share);
+  part.transmission = each * (nearer ? edge.pixel.nearerPart : glm::vec3(1.0f) - edge.pixel.nearerPart);
+  part.alpha = nearer ? edge.pixel.nearerAlpha : edge.pixel.fartherAlpha;
+  return part;
+}
+
+void EdgePasses::weightAt(int pass, Image<float>& weight) const {
+  for (const Edge& edge : edges_) weight.at(edge.pixel.x, edge.pixel.y) = partOf(edge, pass).light;
+}
+
+void EdgePasses::weigh(int pass, Veil& veil) const {
+  if (transparentPicture_) veil.addScatter();
+  for (const Edge& edge : edges_) {
+    const EdgePixel& at = edge.pixel;
+    const Part part = partOf(edge, pass);
+    veil.light.at(at.x, at.y) *= part.light;
+    veil.transmission.at(at.x, at.y) *= part.transmission;
+    if (!veil.scatters()) continue;
+    glm::vec3& direct = veil.direct.at(at.x, at.y);
+    const float passed = shading::meanOf(direct);
+    direct *= part.transmission;
+    glm::vec4& applied = veil.applied.at(at.x, at.y);
+    applied *= part.light;
+    // compose() lets nothing shine by the pixel's own alpha; here it is that of the surface.
+    applied.a += part.light * passed * (1.0f - part.alpha) - shading::meanOf(direct) * (1.0f - at.alpha);
+  }
+}
+
+void EdgePasses::finish(Veil& mean) const {
+  for (const Edge& edge : edges_) {
+    const EdgePixel& at = edge.pixel;
+    glm::vec3& transmission = mean.transmission.at(at.x, at.y);
+    transmission = mean.touched.at(at.x, at.y) ? glm::min(transmission, glm::vec3(1.0f)) : glm::vec3(1.0f);
+  }
+}
+
+}  // namespace pellucid

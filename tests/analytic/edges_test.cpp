@@ -1,0 +1,146 @@
+// Filtered edges taken apart, against closed forms: shares, planes and directions of what was filtered, and the mean of
+// passes that each see one of the two surfaces.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "composite/antialias.h"
+#include "composite/edges.h"
+#include "composite/resolve.h"
+
+namespace pellucid {
+namespace {
+
+constexpr int kSize = 32, kFine = 32;
+const glm::dvec4 kFront(0.02, 0.3, 0.01, 1.0), kBack(2.0, 0.1, 1.1, 1.0);
+
+// A front whose edge is the line a x + b y = c, in pixels; both surfaces are tilted.
+struct Scene {
+  double a, b, c;
+  bool inFront(double x, double y) const { return a * x + b * y < c; }
+  static double frontZ(double x, double y) { return 1.0 / (0.3 + 0.0004 * x - 0.0002 * y); }
+  static double backZ(double x, double y) { return 1.0 / (0.1 - 0.0003 * x + 0.0005 * y); }
+  double share(int x, int y) const {
+    int inside = 0;
+    for (int v = 0; v < kFine; ++v)
+      for (int u = 0; u < kFine; ++u) inside += inFront(x + (u + 0.5) / kFine, y + (v + 0.5) / kFine) ? 1 : 0;
+    return static_cast<double>(inside) / (kFine * kFine);
+  }
+  GBuffer picture() const {
+    GBuffer gbuffer;
+    gbuffer.display = gbuffer.data = {0, 0, kSize, kSize};
+    gbuffer.depthPrecision = 0x1p-20f;
+    gbuffer.beauty = Image<glm::vec4>(kSize, kSize);
+    gbuffer.viewZ = Image<float>(kSize, kSize);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const double f = share(x, y), u = x + 0.5, v = y + 0.5;
+        gbuffer.beauty.at(x, y) = glm::vec4(f * kFront + (1.0 - f) * kBack);
+        gbuffer.viewZ.at(x, y) = static_cast<float>(inFront(u, v) ? frontZ(u, v) : backZ(u, v));
+      }
+    return gbuffer;
+  }
+};
+const Scene kScenes[] = {{1.0, 0.0, 16.3}, {1.0, 0.21, 18.0}, {-0.3, 1.0, 9.7}, {0.7, 0.7, 20.8}, {-1.0, -0.4, -22.2}};
+
+bool atBorder(int x, int y) {
+  return x == 0 || y == 0 || x == kSize - 1 || y == kSize - 1;
+}
+
+TEST(Edges, SharesPlanesAndDirections) {
+  for (const Scene& scene : kScenes) {
+    const GBuffer gbuffer = scene.picture();
+    const std::vector<EdgePixel> edges = edgePixels(gbuffer, DepthPlanes(gbuffer, Camera()));
+    std::size_t mixed = 0;
+    for (int y = 1; y < kSize - 1; ++y)
+      for (int x = 1; x < kSize - 1; ++x) {
+        const double f = scene.share(x, y);
+        mixed += f > 0.0 && f < 1.0 ? 1 : 0;
+      }
+    std::size_t inside = 0;
+    const double length = std::hypot(scene.a, scene.b);
+    for (const EdgePixel& edge : edges) {
+      if (atBorder(edge.x, edge.y)) continue;
+      ++inside;
+      EXPECT_NEAR(edge.share, scene.share(edge.x, edge.y), 1e-5);
+      const double u = edge.x + 0.8, v = edge.y + 0.1;
+      // In a corner that holds two pixels of a surface their slope is not known across it.
+      EXPECT_NEAR(edge.nearer.z(0.3, -0.4), Scene::frontZ(u, v), 5e-4 * Scene::frontZ(u, v));
+      EXPECT_NEAR(edge.farther.z(0.3, -0.4), Scene::backZ(u, v), 5e-4 * Scene::backZ(u, v));
+      EXPECT_GT(glm::dot(edge.towardsNearer, glm::dvec2(-scene.a, -scene.b) / length), 0.94) << "20 degrees";
+    }
+    EXPECT_EQ(inside, mixed);
+  }
+}
+
+// One layer at depth z, in the place of the transparent pass.
+Veil layerBefore(const Image<float>& viewZ, float z, const glm::vec3& light, const glm::vec3& transmission) {
+  Veil veil(kSize, kSize);
+  for (std::size_t i = 0; i < viewZ.size(); ++i) {
+    if (z > viewZ[i]) continue;
+    veil.light[i] = light;
+    veil.transmission[i] = transmission;
+    veil.touched[i] = 1;
+  }
+  return veil;
+}
+
+TEST(Edges, ALayerIsCompositedOverEitherSide) {
+  const glm::vec3 light(0.05f, 0.1f, 0.2f), transmission(0.3f, 0.6f, 0.1f);
+  for (const Scene& scene : kScenes)
+    for (const int passes : {2, 3, 8, 16, 64})
+      for (const float z : {2.0f, 5.0f, 20.0f}) {
+        const GBuffer gbuffer = scene.picture();
+        const DepthPlanes planes(gbuffer, Camera());
+        std::vector<glm::dvec2> samples;
+        for (int i = 0; i < passes; ++i) samples.push_back(samplePosition(i, passes));
+        const EdgePasses edges(edgePixels(gbuffer, planes), samples);
+        VeilMean mean;
+        Image<float> there = gbuffer.viewZ, weights(kSize, kSize, 1.0f), sum(kSize, kSize, 0.0f);
+        for (int i = 0; i < passes; ++i) {
+          planes.depthAt(samples[static_cast<std::size_t>(i)], there);
+          edges.depthAt(i, there);
+          Veil veil = layerBefore(there, z, light, transmission);
+          edges.weigh(i, veil);
+          mean.add(std::move(veil));
+          edges.weightAt(i, weights);
+          for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weights[k];
+        }
+        Veil veil = mean.finish();
+        edges.finish(veil);
+        const Picture picture = compose(veil, gbuffer);
+        for (int y = 1; y < kSize - 1; ++y)
+          for (int x = 1; x < kSize - 1; ++x) {
+            const double f = scene.share(x, y);
+            const auto seen = [&](const glm::dvec4& c, bool before) {
+              return before ? glm::dvec3(light) + glm::dvec3(transmission) * glm::dvec3(c) : glm::dvec3(c);
+            };
+            const glm::dvec3 expected = f * seen(kFront, z < 3.0f) + (1.0 - f) * seen(kBack, z < 8.0f);
+            for (int c = 0; c < 3; ++c)
+              EXPECT_NEAR(static_cast<double>(picture.rgba.at(x, y)[c]), expected[c], 2e-5) << x << ", " << y;
+            EXPECT_NEAR(sum.at(x, y), static_cast<float>(passes), 1e-4f * static_cast<float>(passes));
+            if (z > 10.0f) {
+              EXPECT_EQ(picture.rgba.at(x, y), gbuffer.beauty.at(x, y));
+            }
+          }
+      }
+}
+
+// What is not filtered has nothing to take apart, and neither has a colour that is no mixture of its neighbours'.
+TEST(Edges, WhatIsNoMixtureStaysWhole) {
+  const Scene scene = kScenes[1];
+  GBuffer gbuffer = scene.picture();
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      gbuffer.beauty.at(x, y) = glm::vec4(scene.inFront(x + 0.5, y + 0.5) ? kFront : kBack);
+  EXPECT_TRUE(edgePixels(gbuffer, DepthPlanes(gbuffer, Camera())).empty());
+  gbuffer = scene.picture();
+  for (std::size_t i = 0; i < gbuffer.beauty.size(); ++i)
+    if (gbuffer.beauty[i] != glm::vec4(kFront) && gbuffer.beauty[i] != glm::vec4(kBack))
+      gbuffer.beauty[i] = glm::vec4(1.0f, 5.0f, 0.5f, 1.0f);
+  EXPECT_TRUE(edgePixels(gbuffer, DepthPlanes(gbuffer, Camera())).empty());
+}
+
+}  // namespace
+}  // namespace pellucid
