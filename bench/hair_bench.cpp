@@ -43,9 +43,9 @@ Measured measure(int hairs, const std::string& height, const std::string& budget
   must({".", "hair", height, "--hairs", std::to_string(hairs)}, "pellucid_samples", folder);
   Measured result;
   result.file = static_cast<double>(std::filesystem::file_size(folder + "/hair.glb")) / kMiB;
-  const Ended ended =
-      must({"composite", "hair.exr", "hair.glb", "-o", "out.exr", "--aa", "1", "--budget", budget, "--stats", "--json"},
-           "pellucid", folder);
+  const Ended ended = must({"composite", "hair.exr", "hair.glb", "-o", "out.exr", "--aa", "1", "--budget", budget,
+                            "--stats", "--json", "--method", "phenomenological"},
+                           "pellucid", folder);
   const nlohmann::json statistics = nlohmann::json::parse(ended.out).at("statistics");
   result.triangles = statistics.at("triangles");
   result.fragments = statistics.at("fragments");

@@ -42,6 +42,7 @@ void addAccumulate(CLI::App& app) {
   what.listsToo = false;
   what.resolves = false;
   what.keepsRimsApart = true;
+  what.usual = UsualMethod::sums;
   flags->render.addTo(*verb, what);
   verb->add_option("--held-out-by", flags->heldOutBy,
                    "Planes whose solids hide what stands behind them here: so all of them add up in resolve")

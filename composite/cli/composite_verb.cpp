@@ -40,7 +40,8 @@ void composite(const CompositeFlags& flags) {
 
 void addComposite(CLI::App& app) {
   auto flags = std::make_shared<CompositeFlags>();
-  CLI::App* verb = app.add_subcommand("composite", "Composite transparent geometry onto an opaque render");
+  CLI::App* verb = app.add_subcommand(
+      "composite", "Composite transparent geometry onto an opaque render: exactly, unless --method says otherwise");
   RenderVerb what;
   what.defaultPasses = kDefaultPasses;
   flags->render.addTo(*verb, what);

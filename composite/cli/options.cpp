@@ -1,7 +1,6 @@
 #include "composite/cli/options.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -11,8 +10,6 @@
 #include "composite/cli/budget.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
-#include "gbuffer/tiers.h"
-#include "gbuffer/weight_text.h"
 
 namespace pellucid::cli {
 namespace {
@@ -174,70 +171,6 @@ void SceneFlags::into(Request& request) const {
   request.residency.order = parseOrder(order);
   request.residency.budgetBytes = bytes - pages;
   request.device = device;
-}
-
-void MethodFlags::addTo(CLI::App& verb, bool listsToo) {
-  const std::string names = listsToo ? allMethodNames() : sumMethodNames();
-  verb.add_option("--method", method, names)
-      ->check([listsToo, names](const std::string& text) -> std::string {
-        const Method* row = methodNamed(text);
-        if (row && (listsToo || row->isSum)) return "";
-        return fmt::format("--method: found '{}', expected {}", text, names);
-      })
-      ->capture_default_str();
-  std::vector<std::string> tiers;
-  std::string promises;
-  for (const PrecisionTier& row : kTiers) {
-    tiers.emplace_back(row.name);
-    promises += fmt::format("{}{}: {}", promises.empty() ? "" : "; ", row.name, row.promise);
-  }
-  verb.add_option("--precision", precision, promises)->check(CLI::IsMember(tiers))->capture_default_str();
-  addWeightTo(verb, true);
-}
-
-void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
-  normalisationOption_ =
-      verb.add_option("--normalisation", normalisation,
-                      "What the weighted mean of the layers is divided by: per channel, or one number as published")
-          ->check(CLI::IsMember({"spectral", "published"}))
-          ->capture_default_str();
-  weightOption_ = verb.add_option("--weight", weight,
-                                  weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
-                      ->capture_default_str();
-  verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for " + rangedWeights());
-  verb.add_option(
-          "--weight-reference", weightReference,
-          "Metres: where power:K and fig6 weigh 1, which shows in no picture (where the scene begins); the unit "
-          "of the papers' constants in " +
-              referenceWeights())
-      ->check(CLI::PositiveNumber);
-  verb.add_option("--weight-from", weightFrom,
-                  "Picture or planes whose weight, range and reference to take: one for a sequence, for sums that add");
-}
-
-Tier tierOf(const std::string& precision) {
-  return tierNamed(precision).value_or(Tier::float32);
-}
-
-void MethodFlags::into(Request& request) const {
-  request.method = method;
-  request.tier = tierOf(precision);
-  if (method == "over")
-    request.paint = PaintSorted{};
-  else if (const std::optional<ChosenMethod> chosen = chooseMethod(method))
-    request.paint = PaintListed{*chosen};
-  else
-    request.paint = PaintSums{};
-  if (weight == "auto")
-    request.sums.fitWeight = true;
-  else if (weightOption_ && weightOption_->count() > 0)
-    request.sums.weight = parseWeight(weight, PassSettings().weight);
-  if (!weightRange.empty()) request.sums.weightRange = parseRange(weightRange, "--weight-range");
-  request.sums.weightReference = weightReference;
-  request.sums.weightFrom = weightFrom;
-  if (normalisationOption_ && normalisationOption_->count() > 0)
-    request.sums.normalisation =
-        normalisation == "published" ? shading::PLD_NORMALISE_PUBLISHED : shading::PLD_NORMALISE_SPECTRAL;
 }
 
 void RunFlags::addTo(CLI::App& verb) {

@@ -24,21 +24,6 @@ struct SceneFlags {
 CameraChoice cameraChoice(const std::string& text);              // "", a name or eye=...;look=...; throws UsageError
 SurroundingsChoice surroundingsChoice(const std::string& text);  // "", R,G,B or a file; throws UsageError
 
-struct MethodFlags {
-  std::string method = "phenomenological", precision = "float", normalisation = "spectral", weight = "eq5", weightRange,
-              weightFrom;
-  std::optional<double> weightReference;
-  void addTo(CLI::App& verb, bool listsToo);
-  void addWeightTo(CLI::App& verb, bool takesAuto);  // --normalisation, --weight, --weight-range alone
-  // What paints, the tier and the weight. --method stochastic is StochasticFlags'. Throws UsageError.
-  void into(Request& request) const;
-
- private:
-  const CLI::Option *weightOption_ = nullptr, *normalisationOption_ = nullptr;
-};
-
-Tier tierOf(const std::string& precision);
-
 struct RunFlags {
   int threads = 0;
   bool stats = false, json = false;

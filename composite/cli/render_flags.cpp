@@ -68,7 +68,7 @@ void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
 void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
   addCommon(verb, *this);
   foliage.addTo(verb, what.keepsRimsApart);
-  if (what.weighs && what.precision) method.addTo(verb, what.listsToo);
+  if (what.weighs && what.precision) method.addTo(verb, what.listsToo, what.usual);
   if (what.weighs && !what.precision) method.addWeightTo(verb, true);
   if (what.bends) scatter.addTo(verb);
   if (what.weighs)

@@ -6,6 +6,7 @@
 
 #include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
+#include "composite/cli/method_flags.h"
 #include "composite/cli/options.h"
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shadow_flags.h"
@@ -24,6 +25,7 @@ struct RenderVerb {
   bool resolves = true;   // lookups, --resolve, --self-modulation and --layers
   bool keepsRimsApart = false;
   int defaultPasses = 1;
+  UsualMethod usual = UsualMethod::truth;
 };
 
 struct RenderFlags {

@@ -29,8 +29,8 @@ Paint paintOf(const std::string& name, int passes, const StochasticFlags& flags)
   if (name == "over") return PaintSorted{};
   if (const auto variant = stochasticVariant(name)) return PaintSamples{flags.settings(*variant, passes), false};
   if (const auto chosen = chooseMethod(name)) return PaintListed{*chosen};
-  throw UsageError(
-      fmt::format("--methods: found '{}', expected phenomenological, {}, {}", name, kStochasticNames, methodNames()));
+  throw UsageError(fmt::format("--methods: found '{}', expected over, phenomenological, {}, {}", name, kStochasticNames,
+                               methodNames()));
 }
 
 void study(const StudyFlags& flags) {
@@ -58,14 +58,16 @@ void study(const StudyFlags& flags) {
 
 void addStudy(CLI::App& app) {
   auto flags = std::make_shared<StudyFlags>();
-  CLI::App* verb = app.add_subcommand("study", "Error against cost of the methods on a shot: table, plot, page");
+  CLI::App* verb = app.add_subcommand(
+      "study", "Time of the exact picture of a shot, and error against time of the other methods: table, plot, page");
   RenderVerb what;
   what.precision = false;
   what.passes = false;
   flags->render.addTo(*verb, what);
   verb->add_option("-o,--output", flags->folder, "Folder for study.txt, .csv, .json, .svg, .png and .html")->required();
   verb->add_option("--methods", flags->methods,
-                   fmt::format("Methods to compare: phenomenological, {}, {}", kStochasticNames, methodNames()))
+                   fmt::format("Methods to compare with over, which is the truth: phenomenological, {}, {}",
+                               kStochasticNames, methodNames()))
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();

@@ -90,7 +90,7 @@ std::optional<ChosenMethod> chooseMethod(const std::string& text);
 const Method* methodNamed(const std::string& text);
 // "sum, average, ..., wavelet:N (N 0 to 6), ..." of methods(), for messages.
 std::string methodNames();
-// "phenomenological, over, stochastic[:basic|alpha|depth], sum, ..." of allMethods().
+// "over, phenomenological, stochastic[:basic|alpha|depth], sum, ..." of allMethods().
 std::string allMethodNames();
 std::string sumMethodNames();  // of the rows that are sums
 std::string methodsHelp();     // a line for every row

@@ -23,21 +23,21 @@ using enum MethodKind;
 
 std::vector<Method> rows() {
   return {
+      {.name = "over",
+       .kind = sorted,
+       .help = "every layer sorted and composited: exact, in bounded memory; the others are measured against it",
+       .source = "Porter, Duff 1984",
+       .precision = "double",
+       .passes = 2},
       {.name = "phenomenological",
        .kind = planes,
-       .help = "weighted sums per channel, with refraction and diffusion: what an engine draws",
+       .help = "weighted sums per channel, in one pass of any order: what an engine draws, and accumulate",
        .source = "PT17",
        .precision = "float",
        .isSum = true,
        .weighs = true,
        .normalises = true,
        .takesPublished = true},
-      {.name = "over",
-       .kind = sorted,
-       .help = "every layer sorted and composited: the truth that the others are measured against",
-       .source = "Porter, Duff 1984",
-       .precision = "double",
-       .passes = 2},
       {.name = "stochastic",
        .kind = stochastic,
        .help =

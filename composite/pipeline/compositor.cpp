@@ -251,7 +251,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
       made = passPlanes(sums, sample, i, run, {&held, &heldAtCentres, nullptr}, request, counts);
       others.addTo(made.planes, i);
     }
-    made.planes.info.method = made.scatter.info.method = run.plan.method;
+    made.planes.info.method = made.scatter.info.method = sums.method;
     made.edges = run.plan.edges;
     if (i == 0) made.relit = relitPicture(*run.lighting);
     shows = shows || anyLayers(made.planes);

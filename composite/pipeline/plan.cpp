@@ -122,6 +122,10 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   Plan plan;
   plan.method = request.method;
   plan.paint = request.paint;
+  if (request.decided) {
+    plan.methodReason = request.decided->reason;
+    if (!request.decided->note.empty()) plan.notes.push_back(request.decided->note);
+  }
   plan.tier = request.tier;
   plan.pass = passOf(request, facts);
   plan.fitsWeight = request.sums.fitWeight;
@@ -160,6 +164,7 @@ Plan truthOf(const Plan& plan) {
 
 Plan sumsPlanOf(const Plan& plan, const ShotFacts& facts) {
   Plan sums = plan;
+  if (plan.as<PaintSorted>()) sums.method = "phenomenological";
   const auto* listed = plan.as<PaintListed>();
   if (listed && formulaOf(listed->method.name) != SumFormula::mean) {  // of plain sums, without a weight
     sums.pass.weight.kind = shading::PLD_WEIGHT_UNIFORM;
@@ -183,7 +188,7 @@ std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
   const auto say = [&](const char* what, const std::string& how) {
     lines.push_back(fmt::format("{:<12}{}", what, how));
   };
-  say("method", plan.method);
+  say("method", plan.methodReason.empty() ? plan.method : fmt::format("{} ({})", plan.method, plan.methodReason));
   say("painted by", nameOf(plan.route));
   say("tier", plan.route == Route::lists && !plan.isExact() ? "double precision, pixel by pixel"
                                                             : std::string(tierRow(plan.tier).name));

@@ -23,8 +23,9 @@ const char* nameOf(Route route);
 
 struct Plan {
   std::string method;
-  Paint paint = PaintSums{};
-  Route route = Route::drawnSums;
+  std::string methodReason;  // where nobody asked for one
+  Paint paint = PaintSorted{};
+  Route route = Route::lists;
   Tier tier = Tier::float32;
   PassSettings pass;        // of every pass; the light, and where in the pixel, are still to come
   bool fitsWeight = false;  // the weight above is only where the fit starts
@@ -54,7 +55,8 @@ Plan planFor(const Request& request, const ShotFacts& facts);
 // The plan of the truth that --measure compares with: the same, sorted.
 Plan truthOf(const Plan& plan);
 
-// The plan of the sums alone, whatever paints: for `accumulate` and the debug layers.
+// The plan of the sums alone, whatever paints: for `accumulate` and the debug layers. Those of a request for the truth
+// are the phenomenological ones.
 Plan sumsPlanOf(const Plan& plan, const ShotFacts& facts);
 
 // Pass `index` of `count`: where in the pixel, and how much of it that place stands for.

@@ -12,6 +12,7 @@
 #include "composite/gather.h"
 #include "composite/methods/method.h"
 #include "composite/methods/stochastic.h"
+#include "composite/pipeline/default_method.h"
 #include "engine_bridge/scene/gltf.h"
 #include "engine_bridge/scene/pass_settings.h"
 #include "gbuffer/medium.h"
@@ -132,8 +133,9 @@ enum class EdgeRule { resolve, off };
 
 struct Request {
   ShotRequest shot;
-  std::string method = "phenomenological";  // as it was asked for: for headers and messages
-  Paint paint = PaintSums{};
+  std::string method = "over";  // as it was asked for: for headers and messages
+  Paint paint = PaintSorted{};
+  std::optional<MethodDecision> decided;  // where nobody asked for a method: why it is this one
   Tier tier = Tier::float32;
   SumsRequest sums;
   int passes = 1;  // jittered, averaged

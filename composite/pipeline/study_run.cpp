@@ -23,6 +23,7 @@ StudyCandidate candidateOf(const Request& base, const std::string& name, Paint p
   StudyCandidate candidate{name, "", base};
   Request& request = candidate.request;
   request.method = name;
+  request.decided.reset();
   request.passes = passes;
   request.tier = tier;
   request.paint = std::move(paint);

@@ -35,8 +35,9 @@ TEST(BridgeStained, ShadowsEqualTheOfflineProgram) {
                          open = readOpaque(folder + "/opaque.exr", {}).gbuffer.beauty;
   for (const char* shadows : {"exact", "stochastic"}) {
     std::vector<std::string> arguments{
-        "composite",     "opaque.exr",     "glass.glb",      "-o",      "offline.exr", "--aa", "1",
-        "--environment", "0.35,0.38,0.42", "--weight-range", "0.1:100", "--shadows",   shadows};
+        "composite",       "opaque.exr",     "glass.glb",      "-o",      "offline.exr", "--aa",  "1",
+        "--environment",   "0.35,0.38,0.42", "--weight-range", "0.1:100", "--shadows",   shadows, "--method",
+        "phenomenological"};
     if (std::string(shadows) == "stochastic") arguments.insert(arguments.end(), {"--shadow-size", "2048"});
     const Ended offline = runProgram(arguments, options);
     ASSERT_EQ(offline.code, 0) << offline.err;

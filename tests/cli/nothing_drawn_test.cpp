@@ -33,7 +33,7 @@ class NothingDrawn : public ::testing::Test {
   void expectSaid(const std::vector<Quad>& quads, const std::string& why) {
     writeGlb(folder + "/scene.glb", quads);
     for (const std::vector<std::string>& verb : {std::vector<std::string>{"composite", "-o", "out.exr"},
-                                                 {"composite", "-o", "out.exr", "--method", "over"},
+                                                 {"composite", "-o", "out.exr", "--method", "phenomenological"},
                                                  {"accumulate", "-o", "planes.exr"},
                                                  {"fragments", "-o", "deep.exr"},
                                                  {"study", "-o", "report", "--methods", "sum"}}) {

@@ -123,6 +123,8 @@ Request requestOf(const std::string& opaque, const std::string& scene) {
   request.shot.opaque = opaque;
   request.shot.inputs = {scene};
   request.shot.surroundings = glm::vec3(0.2f, 0.3f, 0.4f);
+  request.method = "phenomenological";
+  request.paint = PaintSums{};
   return request;
 }
 

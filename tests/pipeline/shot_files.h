@@ -16,7 +16,7 @@ struct ShotFiles {
 // Written into a folder of the test's own.
 ShotFiles writeShotFiles(const std::string& folder);
 
-// Composites `scene` over `opaque` at pixel centres; nothing is inferred from the sky.
+// Composites `scene` over `opaque` by the sums, at pixel centres; nothing is inferred from the sky.
 Request requestOf(const std::string& opaque, const std::string& scene);
 
 // What --method takes, without the settings of samples.

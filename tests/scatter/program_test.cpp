@@ -38,17 +38,18 @@ struct Shot {
 
 TEST(ScatterProgram, FlagsThatCannotBeHonouredAreUsageErrors) {
   const Shot shot;
-  const std::vector<std::vector<std::string>> wrong = {{"--refract", "sideways"},
-                                                       {"--refract", "fixed:-1"},
-                                                       {"--refract", "fixed:"},
-                                                       {"--diffusion-scale", "0.3"},
-                                                       {"--diffusion-scale", "0:1"},
-                                                       {"--diffusion-kernel", "disc", "--gather", "exact"},
-                                                       {"--precision", "exact", "--method", "unsorted"},
-                                                       {"--precision", "published", "--method", "weighted"},
-                                                       {"--precision", "published", "--method", "over"},
-                                                       {"--precision", "published", "--normalisation", "spectral"},
-                                                       {"--precision", "published", "--tolerance", "0.1"}};
+  const std::vector<std::vector<std::string>> wrong = {
+      {"--refract", "sideways"},
+      {"--refract", "fixed:-1"},
+      {"--refract", "fixed:"},
+      {"--diffusion-scale", "0.3"},
+      {"--diffusion-scale", "0:1"},
+      {"--diffusion-kernel", "disc", "--gather", "exact"},
+      {"--precision", "exact", "--method", "unsorted"},
+      {"--precision", "published", "--method", "weighted"},
+      {"--precision", "published", "--method", "over"},
+      {"--method", "phenomenological", "--precision", "published", "--normalisation", "spectral"},
+      {"--precision", "published", "--tolerance", "0.1"}};
   for (const auto& flags : wrong) {
     const Ended ended = shot.composite("wrong.exr", flags);
     EXPECT_EQ(ended.code, 2) << flags[1] << '\n' << ended.err;
@@ -58,9 +59,15 @@ TEST(ScatterProgram, FlagsThatCannotBeHonouredAreUsageErrors) {
 
 TEST(ScatterProgram, ExactGivesTheSameFileForEveryOrderBudgetAndThreadCount) {
   const Shot shot;
-  ASSERT_EQ(shot.composite("a.exr", {"--precision", "exact"}).code, 0);
-  ASSERT_EQ(shot.composite("b.exr", {"--precision", "exact", "--order", "reverse", "--threads", "1"}).code, 0);
-  ASSERT_EQ(shot.composite("c.exr", {"--precision", "exact", "--order", "shuffle:5", "--budget", "64K"}).code, 0);
+  ASSERT_EQ(shot.composite("a.exr", {"--method", "phenomenological", "--precision", "exact"}).code, 0);
+  ASSERT_EQ(shot.composite("b.exr", {"--method", "phenomenological", "--precision", "exact", "--order", "reverse",
+                                     "--threads", "1"})
+                .code,
+            0);
+  ASSERT_EQ(shot.composite("c.exr", {"--method", "phenomenological", "--precision", "exact", "--order", "shuffle:5",
+                                     "--budget", "64K"})
+                .code,
+            0);
   const std::string a = slurp(shot.folder + "/a.exr");
   EXPECT_TRUE(a == slurp(shot.folder + "/b.exr"));
   EXPECT_TRUE(a == slurp(shot.folder + "/c.exr"));
@@ -98,7 +105,8 @@ TEST(ScatterProgram, NotFiniteColourIsContainedAndReported) {
 
 TEST(ScatterProgram, PruningIsReportedAndChangesNoBit) {
   const Shot shot;
-  const Ended pruned = shot.composite("pruned.exr", {"--stats"}), full = shot.composite("full.exr", {"--no-prune"});
+  const Ended pruned = shot.composite("pruned.exr", {"--method", "phenomenological", "--stats"}),
+              full = shot.composite("full.exr", {"--method", "phenomenological", "--no-prune"});
   ASSERT_EQ(pruned.code, 0) << pruned.err;
   ASSERT_EQ(full.code, 0) << full.err;
   EXPECT_TRUE(slurp(shot.folder + "/pruned.exr") == slurp(shot.folder + "/full.exr"));
@@ -108,18 +116,21 @@ TEST(ScatterProgram, PruningIsReportedAndChangesNoBit) {
 
 TEST(ScatterProgram, PublishedTierKeepsNoDepth) {
   const Shot shot;
-  const Ended ended = shot.composite("wrong.exr", {"--precision", "published", "--layers", "depth"});
+  const Ended ended =
+      shot.composite("wrong.exr", {"--method", "phenomenological", "--precision", "published", "--layers", "depth"});
   EXPECT_EQ(ended.code, 2) << ended.err;
   EXPECT_NE(ended.err.find("--layers"), std::string::npos) << ended.err;
 }
 
 TEST(ScatterProgram, PublishedTierReportsItsBitsAndItsClamps) {
   const Shot shot;
-  const Ended plain = shot.composite("plain.exr", {"--precision", "published", "--stats"});
+  const Ended plain =
+      shot.composite("plain.exr", {"--method", "phenomenological", "--precision", "published", "--stats"});
   ASSERT_EQ(plain.code, 0) << plain.err;
   EXPECT_NE(plain.out.find("112 bits per pixel"), std::string::npos) << plain.out;
   EXPECT_EQ(plain.err.find("clamped"), std::string::npos) << plain.err;
-  const Ended wide = shot.composite("wide.exr", {"--precision", "published", "--stats", "--diffusion-scale", "90:0.5"});
+  const Ended wide = shot.composite("wide.exr", {"--method", "phenomenological", "--precision", "published", "--stats",
+                                                 "--diffusion-scale", "90:0.5"});
   ASSERT_EQ(wide.code, 0) << wide.err;
   EXPECT_NE(wide.out.find("clamped"), std::string::npos) << wide.out;
   EXPECT_NE(wide.err.find("clamped"), std::string::npos) << wide.err;
@@ -133,8 +144,10 @@ TEST(ScatterProgram, PublishedPlanesResolveToTheSamePicture) {
   const Ended ended = runProgram({"resolve", shot.opaque, planes, "-o", shot.folder + "/two.exr"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   for (const std::string name : {"one", "other"}) {
-    std::vector<std::string> arguments{"composite",   shot.opaque, shot.glass, "-o", shot.folder + "/" + name + ".exr",
-                                       "--precision", "published", "--aa",     "1"};
+    std::vector<std::string> arguments{
+        "composite",       shot.opaque, shot.glass, "-o", shot.folder + "/" + name + ".exr",
+        "--precision",     "published", "--aa",     "1",  "--method",
+        "phenomenological"};
     if (name == "other") arguments.emplace_back("--no-self-modulation");
     ASSERT_EQ(runProgram(arguments).code, 0);
   }
@@ -155,7 +168,7 @@ TEST(ScatterProgram, AccumulateThenResolveIsComposite) {
   const Ended ended = runProgram({"resolve", shot.opaque, planes, "-o", resolved, "--layers", "D,delta,weight,count"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const Ended one = runProgram({"composite", shot.opaque, shot.glass, "-o", shot.folder + "/one.exr", "--aa", "1",
-                                "--layers", "D,delta,weight,count"});
+                                "--method", "phenomenological", "--layers", "D,delta,weight,count"});
   ASSERT_EQ(one.code, 0) << one.err;
   const ExrDocument a = readExr(resolved), b = readExr(shot.folder + "/one.exr");
   ASSERT_EQ(a.parts[0].channels.size(), b.parts[0].channels.size());

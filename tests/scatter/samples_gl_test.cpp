@@ -19,9 +19,10 @@ TEST(ResolveGl, GivesTheFileOfTheCpuOnEverySample) {
     if (file.size() < 5 || file.substr(file.size() - 4) != ".glb") continue;
     const std::string name = file.substr(0, file.size() - 4);
     for (const std::string resolver : {"cpu", "gl"}) {
-      const Ended ended = runProgram({"composite", name + ".exr", name + ".glb", "-o",
-                                      name + "-" + resolver + ".out.exr", "--aa", "2", "--resolve", resolver},
-                                     options);
+      const Ended ended =
+          runProgram({"composite", name + ".exr", name + ".glb", "-o", name + "-" + resolver + ".out.exr", "--aa", "2",
+                      "--method", "phenomenological", "--resolve", resolver},
+                     options);
       ASSERT_EQ(ended.code, 0) << name << ": " << ended.err;
     }
     const std::string cpu = slurp(options.folder + "/" + name + "-cpu.out.exr"),
@@ -68,10 +69,10 @@ TEST(LowResolutionProgram, EveryMethodAndTierHonoursIt) {
   EXPECT_NE(unmarked.err.find("no transparent material is marked"), std::string::npos) << unmarked.err;
   EXPECT_EQ(run({"--low-res", "3"}).code, 2);
   for (const std::vector<std::string>& every : {std::vector<std::string>{},
-                                                {"--method", "over"},
+                                                {"--method", "phenomenological"},
                                                 {"--method", "wavelet:2"},
-                                                {"--precision", "exact"},
-                                                {"--precision", "published"},
+                                                {"--method", "phenomenological", "--precision", "exact"},
+                                                {"--method", "phenomenological", "--precision", "published"},
                                                 {"--tolerance", "0.1"}}) {
     SCOPED_TRACE(every.empty() ? "default" : every.back());
     const std::string plain = picture(every);

@@ -58,7 +58,7 @@ class Shots : public ::testing::TestWithParam<const char*> {
 
 TEST_P(Shots, FittedWeightIsWithinTwoPercentOfTheBestListed) {
   // All at full resolution, as the lists are: what low resolution adds to the error is no weight's.
-  const nlohmann::json fitted = measured({"--weight", "auto", "--low-res", "1"});
+  const nlohmann::json fitted = measured({"--method", "phenomenological", "--weight", "auto", "--low-res", "1"});
   const double autoMean = fitted["error"]["mean"].get<double>();
   // The same lists in this process: once for all weights.
   ASSERT_EQ(runProgram({"fragments", opaque, glass, "-o", folder + "/deep.exr"}).code, 0);
@@ -96,7 +96,7 @@ TEST_P(Shots, ToleranceIsNeverViolated) {
   const double tolerance = .004;
   const nlohmann::json report = measured({"--tolerance", std::to_string(tolerance)});
   const Image<glm::vec4> within = readOpaque(folder + "/out.exr", {}).gbuffer.beauty;
-  const nlohmann::json weighted = measured({});
+  const nlohmann::json weighted = measured({"--method", "phenomenological"});
   const Ended over =
       runProgram({"composite", opaque, glass, "-o", folder + "/over.exr", "--aa", "1", "--method", "over"});
   ASSERT_EQ(over.code, 0) << over.err;

@@ -145,7 +145,7 @@ TEST(Systems, OnePassEachIsNearerToTheTruth) {
   }
   const auto rmse = [&](const std::string& systems) {
     const Ended ended = runProgram({"composite", "opaque.exr", "near.glb", "far.glb", "-o", systems + ".exr", "--aa",
-                                    "1", "--systems", systems, "--measure", "--json"},
+                                    "1", "--method", "phenomenological", "--systems", systems, "--measure", "--json"},
                                    options);
     EXPECT_EQ(ended.code, 0) << ended.err;
     return nlohmann::json::parse(ended.out)["error"]["rmse"].get<double>();
