@@ -22,6 +22,8 @@ pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
 find_library(OPENVDB_LIBRARY openvdb REQUIRED)
 pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
+# Debian's OpenColorIO keeps its CMake files where find_package does not look.
+pkg_check_modules(OPENCOLORIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 
 # Debian's OpenImageIO names OpenCV's headers, which it does not depend on: keep only folders that exist.
 get_target_property(oiio_folders OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)

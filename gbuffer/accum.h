@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gbuffer/camera.h"
+#include "gbuffer/colour_space.h"
 #include "gbuffer/image.h"
 #include "gbuffer/weight_text.h"
 #include "shaders/shading.h"
@@ -18,6 +19,7 @@ struct OitInfo {
   std::string tier = "float";  // "float", "exact" or "published"
   std::string solidHash;       // of the solid plane: sums behind different solids do not add
   std::string places;          // of a deep picture's samples, and of which; "" for a flat picture's pixels
+  ColourSpace space;           // that all colours are in, the picture's
 };
 
 // RGBA32F planes of the data window, packed as shaders/shared/accumulate.glsl and refraction.glsl pack them; every

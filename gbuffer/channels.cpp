@@ -53,9 +53,29 @@ std::string withoutView(const std::string& partName, const std::string& view) {
   return partName[separator] == '_' || partName[separator] == '.' ? partName.substr(0, separator) : partName;
 }
 
+// Of a file beside the picture, whose layers go by the name that was given; where it has one layer, by that alone.
+NamedChannel nameBeside(const ExrPart& part, int index, const ExrChannel& channel) {
+  const auto layerOf = [](const std::string& name) { return name.substr(0, name.rfind('.') + 1); };
+  const bool oneLayer = std::all_of(part.channels.begin(), part.channels.end(), [&](const ExrChannel& other) {
+    return layerOf(other.name) == layerOf(channel.name);
+  });
+  const std::string inside = oneLayer && !part.name.empty() ? "" : layerOf(channel.name);
+  NamedChannel named;
+  named.part = index;
+  named.channel = &channel;
+  named.layerName = part.name.empty() ? inside : part.name + "." + inside;
+  named.fullName = named.layerName + channel.name.substr(layerOf(channel.name).size());
+  while (named.layerName.ends_with(".")) named.layerName.pop_back();
+  named.suffix = lower(split(channel.name).back());
+  for (const std::string& word : split(named.layerName))
+    if (!word.empty() && !isOneOf(lower(word), kEmptyWords)) named.layers.push_back(lower(word));
+  return named;
+}
+
 NamedChannel nameOne(const ExrDocument& document, int index, const ExrChannel& channel) {
   const ExrPart& part = document.parts[static_cast<std::size_t>(index)];
-  const bool manyParts = document.parts.size() > 1;
+  if (!part.from.empty()) return nameBeside(part, index, channel);
+  const bool manyParts = document.ownParts > 1;
   const bool manyViews = document.views.size() > 1;
   NamedChannel named;
   named.part = index;
@@ -83,6 +103,16 @@ NamedChannel nameOne(const ExrDocument& document, int index, const ExrChannel& c
   // In one part, channels without a view belong to the default view.
   if (manyViews && named.view.empty() && !manyParts) named.view = document.views[0];
   return named;
+}
+
+// Whether a layer or a channel of that name is such a pass.
+bool means(Pass pass, const std::string& word) {
+  static constexpr const char* kNormalWords[] = {"n", "nn", "normal", "normals"};
+  static constexpr const char* kPositionWords[] = {"p", "position", "pworld", "hitp", "worldposition"};
+  static constexpr const char* kOcclusionWords[] = {"ao", "ambientocclusion", "ambient_occlusion", "occlusion"};
+  return pass == Pass::normal     ? isOneOf(word, kNormalWords)
+         : pass == Pass::position ? isOneOf(word, kPositionWords)
+                                  : isOneOf(word, kOcclusionWords);
 }
 
 int colourIndex(const std::string& suffix) {
@@ -158,6 +188,14 @@ std::vector<BeautyChannels> colourLayers(const std::vector<NamedChannel>& channe
   return found;
 }
 
+[[noreturn]] void refuseTwo(const std::string& path, const char* what, const std::string& first,
+                            const std::string& second, const char* flag) {
+  throw MeaningError(
+      fmt::format("{}: two {}: found {} and {}, expected one, or {} NAME", path, what, first, second, flag));
+}
+
+}  // namespace
+
 bool isDepth(const NamedChannel& named, const std::vector<NamedChannel>& channels) {
   const auto sibling = [&](const char* suffix) {
     return std::any_of(channels.begin(), channels.end(), [&](const NamedChannel& other) {
@@ -175,13 +213,11 @@ bool isDepth(const NamedChannel& named, const std::vector<NamedChannel>& channel
   return false;
 }
 
-[[noreturn]] void refuseTwo(const std::string& path, const char* what, const std::string& first,
-                            const std::string& second, const char* flag) {
-  throw MeaningError(
-      fmt::format("{}: two {}: found {} and {}, expected one, or {} NAME", path, what, first, second, flag));
+std::vector<NamedChannel> ownChannels(const ExrDocument& document, const std::vector<NamedChannel>& channels) {
+  std::vector<NamedChannel> own = channels;
+  std::erase_if(own, [&](const NamedChannel& c) { return static_cast<std::size_t>(c.part) >= document.ownParts; });
+  return own;
 }
-
-}  // namespace
 
 std::vector<NamedChannel> nameChannels(const ExrDocument& document) {
   std::vector<NamedChannel> named;
@@ -286,16 +322,15 @@ const NamedChannel& resolveDepth(const ExrDocument& document, const std::vector<
   return *found[0];
 }
 
+bool isPassName(const std::string& name) {
+  const std::string last = lower(split(name).back());
+  return means(Pass::normal, last) || means(Pass::position, last) || means(Pass::occlusion, last) ||
+         (name.starts_with("light.") && name.size() > 6);
+}
+
 std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channels, const BeautyChannels& beauty,
                                         Pass pass) {
-  static constexpr const char* kNormalWords[] = {"n", "nn", "normal", "normals"};
-  static constexpr const char* kPositionWords[] = {"p", "position", "pworld", "hitp", "worldposition"};
-  static constexpr const char* kOcclusionWords[] = {"ao", "ambientocclusion", "ambient_occlusion", "occlusion"};
-  const auto named = [&](const std::string& word) {
-    return pass == Pass::normal     ? isOneOf(word, kNormalWords)
-           : pass == Pass::position ? isOneOf(word, kPositionWords)
-                                    : isOneOf(word, kOcclusionWords);
-  };
+  const auto named = [&](const std::string& word) { return means(pass, word); };
   std::vector<PassChannels> found;
   std::vector<bool> beside;
   const auto family = familyOf(beauty.layers);

@@ -30,7 +30,12 @@ struct NamedChannel {
   std::string suffix;               // the last word, lower case
   std::string view;                 // "" when the file has none, or one for all
 };
+// Of the parts of files beside the picture too, under the names of those files.
 std::vector<NamedChannel> nameChannels(const ExrDocument& document);
+// Of the picture's own file alone.
+std::vector<NamedChannel> ownChannels(const ExrDocument& document, const std::vector<NamedChannel>& channels);
+// Whether its name says depth.
+bool isDepth(const NamedChannel& channel, const std::vector<NamedChannel>& channels);
 
 struct BeautyChannels {
   int part = 0;
@@ -61,6 +66,9 @@ enum class Pass { normal, position, occlusion };
 // Nothing when there is none. The pass beside the beauty wins over others; of occlusion [1] and [2] may be null.
 std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channels, const BeautyChannels& beauty,
                                         Pass pass);
+
+// Whether a name says such a pass, or one light's part of the picture: "N", "AO", "light.key".
+bool isPassName(const std::string& name);
 
 // "R, G, B and 30 more"
 std::string listNames(const std::vector<NamedChannel>& channels, std::size_t most = 40);

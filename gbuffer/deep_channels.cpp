@@ -91,6 +91,7 @@ DeepChannels resolveDeep(const ExrDocument& document, const std::string& view) {
   DeepChannels channels;
   channels.part = deepPart(document, view, channels.note);
   const ExrPart& part = document.parts[static_cast<std::size_t>(channels.part)];
+  channels.chromaticities = chromaticitiesOf(part);
   std::vector<NamedChannel> named = nameChannels(document);
   std::erase_if(named, [&](const NamedChannel& channel) { return channel.part != channels.part; });
   // Parts' names are layers to nameChannels; inside of one part they tell nothing apart.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gbuffer/exr_document.h"
+#include "gbuffer/colour_space.h"
 
 namespace pellucid {
 
@@ -19,7 +19,8 @@ struct DeepChannels {
   int coverage = -1, variance = -1;
   std::array<int, 3> transmission{-1, -1, -1};
   std::array<int, 2> offset{-1, -1};
-  std::string note;  // which of several deep parts or views is taken, "" where there is one
+  std::optional<Chromaticities> chromaticities;  // as the part states them
+  std::string note;                              // which of several deep parts or views is taken, "" where there is one
   bool hasRecord() const { return coverage >= 0; }
 };
 

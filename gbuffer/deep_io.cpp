@@ -349,6 +349,8 @@ DeepWriter::DeepWriter(const std::string& path, const DeepHeader& header)
     out.compression() = exr::ZIPS_COMPRESSION;
     for (const std::string& name : header.channels) out.channels().insert(name, exr::Channel(exr::FLOAT));
     for (const auto& [name, text] : header.attributes) out.insert(name, exr::StringAttribute(text));
+    if (const std::vector<float>& xy = header.chromaticities; xy.size() == 8)
+      exr::addChromaticities(out, exr::Chromaticities({xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}));
     if (header.camera) {
       float matrices[2][4][4];
       cameraToExr(*header.camera, matrices[0], matrices[1]);

@@ -43,7 +43,8 @@ struct DeepHeader {
   double pixelAspect = 1.0;
   std::vector<std::string> channels;  // all float
   std::map<std::string, std::string> attributes;
-  const Camera* camera = nullptr;  // written when given
+  const Camera* camera = nullptr;     // written when given
+  std::vector<float> chromaticities;  // 8 numbers, or none
 };
 
 // A new single-part deep scanline file, ZIPS. Rows come from the top, without gaps; the file appears at finish().

@@ -38,6 +38,7 @@ struct ExrAttribute {
 struct ExrPart {
   struct Header;  // wraps Imf::Header, so that OpenEXR stays in few files
   std::shared_ptr<const Header> header;
+  std::string from;  // "" in the document's own file, else the file beside it
   std::string name;  // "" in a single-part file without a name
   std::string view;  // "" unless the part says so
   Window display, data;
@@ -58,6 +59,7 @@ struct ExrDocument {
   std::string path;
   bool multiPart = false;
   std::vector<ExrPart> parts;
+  std::size_t ownParts = 0;                 // that are written; behind them stand those of files beside it
   std::vector<std::string> views;           // in order, the first is the default; "" or empty when the file has none
   std::vector<std::string> notes;           // one sentence each: what was found that a user may want to know
   std::shared_ptr<const ExrSource> source;  // still open: parts that do not change are copied from it as they are
@@ -94,6 +96,7 @@ struct NewExr {
   std::vector<ExrChannel> channels;
   std::map<std::string, std::string> attributes;
   std::map<std::string, std::vector<float>> matrices;  // 16 numbers each, row major, as m44f attributes
+  std::vector<float> chromaticities;                   // 8 numbers as EXR has them, or none
   // A part whose attributes are copied, but for those of storage and those that are given above; may be null.
   const ExrPart* like = nullptr;
 };

@@ -166,6 +166,7 @@ ExrDocument readExr(const std::string& path) {
       document.parts.push_back(describePart(file.header(i), layout.parts[static_cast<std::size_t>(i)]));
       readChannels(file, i, document.parts.back());
     }
+    document.ownParts = document.parts.size();
     noteViews(document, file.header(0));
   } catch (const Error&) {
     throw;

@@ -1,5 +1,6 @@
 #include <OpenEXR/ImfArray.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfDeepScanLineInputPart.h>
 #include <OpenEXR/ImfDeepScanLineOutputPart.h>
 #include <OpenEXR/ImfDeepTiledInputPart.h>
@@ -195,7 +196,7 @@ std::vector<std::string> writeExr(const std::string& path, const ExrDocument& do
   std::vector<const ExrPartEdit*> editOf;
   std::vector<exr::Header> headers;
   std::vector<std::string> notes;
-  for (int i = 0; i < static_cast<int>(document.parts.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(document.ownParts); ++i) {
     const auto found = edits.find(i);
     editOf.push_back(found == edits.end() ? &nothing : &found->second);
     checkEdit(document, i, *editOf.back());
@@ -209,7 +210,7 @@ std::vector<std::string> writeExr(const std::string& path, const ExrDocument& do
       return;
     }
     exr::MultiPartOutputFile out(sink, headers.data(), static_cast<int>(headers.size()), false, exrThreads());
-    for (std::size_t i = 0; i < document.parts.size(); ++i)
+    for (std::size_t i = 0; i < document.ownParts; ++i)
       writePart(out, file, static_cast<int>(i), document.parts[i], *editOf[i]);
   };
   writeAtomically(path, [&](ExrSink& sink) {
@@ -257,6 +258,9 @@ struct NewPart {
           matrix[row][column] = numbers.at(static_cast<std::size_t>(row * 4 + column));
       put(name, exr::M44fAttribute(matrix));
     }
+    if (const std::vector<float>& xy = file.chromaticities; xy.size() == 8)
+      put("chromaticities", exr::ChromaticitiesAttribute(
+                                exr::Chromaticities({xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]})));
     const std::size_t pixels =
         static_cast<std::size_t>(file.data.width()) * static_cast<std::size_t>(file.data.height());
     for (const ExrChannel& channel : file.channels) {

@@ -12,6 +12,7 @@
 #include "gbuffer/deep_io.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/part_camera.h"
+#include "gbuffer/side_files.h"
 
 namespace pellucid {
 namespace {
@@ -178,6 +179,7 @@ json understoodJson(const OpaqueFile& file) {
   report["depth"] = {{"part", choice.depthPart},
                      {"partName", partName(choice.depthPart)},
                      {"channel", printable(choice.depthChannel)},
+                     {"file", printable(choice.depthFile)},
                      {"kind", choice.depthKind},
                      {"far", numberJson(choice.farValue)},
                      {"least", numberJson(choice.least)},
@@ -188,6 +190,7 @@ json understoodJson(const OpaqueFile& file) {
                      {"histogram", histogramJson(file.gbuffer.viewZ)}};
   report["preset"] =
       choice.preset.empty() ? json() : json({{"name", choice.preset}, {"by", printable(choice.presetBy)}});
+  report["colourSpace"] = {{"name", printable(file.space.name)}, {"by", nameOf(file.space.source)}};
   report["normals"] = !file.gbuffer.normal.empty();
   report["occlusion"] = !file.gbuffer.occlusion.empty();
   report["camera"] = cameraReport(file, true);
@@ -232,11 +235,11 @@ std::string deepText(const json& deep, const json& depth) {
 }  // namespace
 
 nlohmann::json inspectExr(const std::string& path, const ReadOptions& options) {
-  ExrDocument document = readExr(path);
+  ExrDocument document = readWithSides(path, options);
   json report;
   report["file"] = printable(path);
   report["parts"] = json::array();
-  for (const ExrPart& part : document.parts) report["parts"].push_back(partJson(part));
+  for (std::size_t i = 0; i < document.ownParts; ++i) report["parts"].push_back(partJson(document.parts[i]));
   std::vector<std::string> notes = document.notes;
   const bool deep =
       std::all_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; });
@@ -280,6 +283,8 @@ std::string inspectionText(const nlohmann::json& report) {
     if (!report["preset"].is_null())
       text += fmt::format("preset: {}, by {}\n", textOf(report["preset"]["name"]), textOf(report["preset"]["by"]));
     text += fmt::format("beauty:{}{}\n", names, inPart(report["beauty"]));
+    const json& space = report["colourSpace"];
+    text += fmt::format("colours in {}, said by {}\n", textOf(space["name"]), textOf(space["by"]));
     const json& depth = report["depth"];
     text += fmt::format("depth: {}{}, {}, nothing hit from {}\n", textOf(depth["channel"]), inPart(depth),
                         depth["kind"].get<std::string>(), textOf(depth["far"]));

@@ -6,18 +6,28 @@
 #include <string>
 #include <vector>
 
+#include "gbuffer/colour_space.h"
 #include "gbuffer/exr_document.h"
 #include "gbuffer/gbuffer.h"
 
 namespace pellucid {
 
+// A pass in a file of its own.
+struct SideFile {
+  std::string name;  // its layers are called so, "N"; "" of depth
+  std::string path;
+  std::string channel;  // of depth; "" resolves it
+};
+
 struct ReadOptions {
-  std::string preset = "auto";     // --preset: auto, or a row of producers.h
-  std::string beautyLayer;         // --beauty: a layer, a part or a view; "" resolves it
-  std::string view;                // --view; "" is the first of the file
-  std::string depthChannel;        // --depth: full channel name (with its part where parts have names); "" resolves it
-  std::string depthKind;           // --depth-kind, see depth_kind.h; "" is the producer's, else planar
-  std::optional<double> farValue;  // --far: this and anything beyond is 'nothing hit'
+  std::string preset = "auto";  // --preset: auto, or a row of producers.h
+  std::string beautyLayer;      // --beauty: a layer, a part or a view; "" resolves it
+  std::string view;             // --view; "" is the first of the file
+  std::string depthChannel;     // --depth: full channel name (with its part where parts have names); "" resolves it
+  std::optional<SideFile> depthFile;    // --depth FILE.exr[:CHANNEL], instead of a channel
+  std::vector<SideFile> aovs;           // --aov NAME=FILE, in order
+  std::string depthKind;                // --depth-kind, see depth_kind.h; "" is the producer's, else planar
+  std::optional<double> farValue;       // --far: this and anything beyond is 'nothing hit'
   std::optional<double> metresPerUnit;  // --unit; without it the producer's, else 1
   // Windows and camera alone: no pixel is looked at, because the camera that converts depth is not chosen yet.
   bool framingAlone = false;
@@ -29,6 +39,7 @@ struct OpaqueChoice {
   std::string beautyChannel[4];  // R, G, B, A; A may be ""
   int depthPart = 0;
   std::string depthChannel;
+  std::string depthFile;  // "" where it is the picture's own
   std::string depthKind;
   double farValue = 0;           // the value (file units) from which depth means nothing hit
   double least = 0, most = 0;    // depths that were hit, as the file has them; both 0 where nothing was
@@ -40,6 +51,7 @@ struct OpaqueFile {
   ExrDocument document;
   GBuffer gbuffer;
   OpaqueChoice choice;
+  ColourSpace space;               // of the beauty: as the file states it, unless a caller knows better
   double metresPerUnit = 1.0;      // as asked for, or the producer's
   std::string cameraRefusal;       // why the camera attributes that are there were not taken
   std::vector<std::string> notes;  // one sentence each, for stderr
@@ -69,13 +81,26 @@ std::vector<std::string> writePicture(const std::string& path, const OpaqueFile&
                                       const Image<std::uint8_t>& touched, const std::vector<ExtraLayer>& layers = {},
                                       const std::map<std::string, std::string>& attributes = {});
 
+// One of several pictures in the same file: its views.
+struct PictureOfView {
+  const OpaqueFile& file;
+  const Image<glm::vec4>& picture;
+  const Image<std::uint8_t>& touched;
+  const std::vector<ExtraLayer>& layers;
+};
+// The same of several views that were read from one file; all are written at once.
+std::vector<std::string> writePictures(const std::string& path, const std::vector<PictureOfView>& views,
+                                       const std::map<std::string, std::string>& attributes = {});
+
 // A new single-part scanline ZIP file of float or half channels, for everything that has no input to imitate. Half
 // values are clamped as in writePicture. Returns the notes.
-//   like  a part whose attributes are copied, but for those of storage; its camera stays when it states one
+//   like            a part whose attributes are copied, but for those of storage; its camera stays when it states one
+//   chromaticities  8 numbers, or none
 std::vector<std::string> writeLayers(const std::string& path, const Window& display, const Window& data,
                                      const std::vector<ExtraLayer>& layers,
                                      const std::map<std::string, std::string>& attributes = {},
-                                     const Camera* camera = nullptr, bool half = false, const ExrPart* like = nullptr);
+                                     const Camera* camera = nullptr, bool half = false, const ExrPart* like = nullptr,
+                                     const std::vector<float>& chromaticities = {});
 
 // Checks a camera against what the file shows: the P / Position pass reprojected on pixel and depth, when there is one.
 // Also tries Blender's Z-up positions. Returns the median residual in pixels, or nothing when it cannot be checked.

@@ -10,6 +10,7 @@
 #include "gbuffer/part_camera.h"
 #include "gbuffer/pixel_rows.h"
 #include "gbuffer/producers.h"
+#include "gbuffer/side_files.h"
 
 namespace pellucid {
 namespace {
@@ -137,14 +138,22 @@ void refuseEnvironmentMaps(const ExrPart& part, const std::string& path) {
 void readOtherPasses(const std::vector<NamedChannel>& channels, const BeautyChannels& beauty, const Producer* producer,
                      OpaqueFile& file) {
   const NormalSpace space = producer ? producer->normals : NormalSpace::world;
-  if (const auto normals = resolvePass(channels, beauty, Pass::normal)) {
+  // What was named wins over what lies in the picture's own file.
+  const auto passOf = [&](Pass pass) {
+    std::vector<NamedChannel> beside = channels;
+    std::erase_if(beside,
+                  [&](const NamedChannel& c) { return static_cast<std::size_t>(c.part) < file.document.ownParts; });
+    const auto found = resolvePass(beside, beauty, pass);
+    return found ? found : resolvePass(channels, beauty, pass);
+  };
+  if (const auto normals = passOf(Pass::normal)) {
     if (space == NormalSpace::camera)
       file.notes.push_back(
           fmt::format("normals {}: left out, {} writes them in camera space", normals->layerName, producer->title));
     else
       readNormals(*normals, space == NormalSpace::worldZUp, file);
   }
-  if (const auto occlusion = resolvePass(channels, beauty, Pass::occlusion)) readOcclusion(*occlusion, file);
+  if (const auto occlusion = passOf(Pass::occlusion)) readOcclusion(*occlusion, file);
 }
 
 // What --depth-kind says, else what the producer writes; planar for a channel that --depth names beside its own.
@@ -185,8 +194,8 @@ OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, con
   OpaqueFile file;
   file.document = std::move(document);
   file.notes = file.document.notes;
-  const std::vector<NamedChannel> channels = nameChannels(file.document);
-  const RecognisedProducer recognised = recogniseProducer(file.document, channels, options.preset);
+  const std::vector<NamedChannel> all = nameChannels(file.document), channels = ownChannels(file.document, all);
+  const RecognisedProducer recognised = recogniseProducer(file.document, all, options.preset);
   const Producer* producer = recognised.row;
   const BeautyChannels beauty = resolveBeauty(file.document, channels, options.beautyLayer, options.view, producer);
   const ExrPart& part = partOf(file, beauty.part);
@@ -194,7 +203,9 @@ OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, con
   if (part.levelMode != 0)
     throw InputError(fmt::format("{}: found a {} map, expected one level: convert it first", file.document.path,
                                  part.levelMode == 1 ? "mip" : "rip"));
-  const NamedChannel& depth = resolveDepth(file.document, channels, beauty, options.depthChannel, producer);
+  const NamedChannel& depth = options.depthFile
+                                  ? depthBeside(file.document, all, *options.depthFile)
+                                  : resolveDepth(file.document, channels, beauty, options.depthChannel, producer);
 
   GBuffer& gbuffer = file.gbuffer;
   gbuffer.display = part.display;
@@ -204,26 +215,28 @@ OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, con
   file.choice.beautyPart = beauty.part;
   file.choice.depthPart = depth.part;
   file.choice.depthChannel = depth.channel->name;
+  file.choice.depthFile = partOf(file, depth.part).from;
   file.choice.preset = producer ? producer->name : "";
   file.choice.presetBy = recognised.by;
   file.metresPerUnit = options.metresPerUnit.value_or(producer ? producer->unit : 1.0);
   if (!beauty.view.empty() && options.beautyLayer.empty() && options.view.empty())
     file.notes.push_back(fmt::format("view {} is used; --view names another", beauty.view));
   readCamera(part, file.metresPerUnit, file);
+  file.space = statedSpace(part, producer ? producer->space : "", file.notes);
   if (options.framingAlone) return file;
   readBeauty(beauty, file);
   if (!camera && gbuffer.camera) camera = &*gbuffer.camera;
   const ExrPart& depthPart = partOf(file, depth.part);
   noteRounded(depthPart, *depth.channel, file);
-  convertDepth(depthPart, *depth.channel, kindOf(options, producer, channels, depth), !options.depthKind.empty(),
-               producer, options.farValue, camera, file);
-  readOtherPasses(channels, beauty, producer, file);
+  convertDepth(depthPart, *depth.channel, kindOf(options, producer, all, depth), !options.depthKind.empty(), producer,
+               options.farValue, camera, file);
+  readOtherPasses(all, beauty, producer, file);
   return file;
 }
 
 OpaqueFile readOpaque(const std::string& path, const ReadOptions& options, const Camera* camera) {
   checkOptions(options);
-  return interpretOpaque(readExr(path), options, camera);
+  return interpretOpaque(readWithSides(path, options), options, camera);
 }
 
 }  // namespace pellucid

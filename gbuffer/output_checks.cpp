@@ -33,6 +33,9 @@ void expectName(const Output& output) {
   if (output.kind == OutputKind::page && extension != ".html" && extension != ".htm")
     throw UsageError(
         fmt::format("{}: found '{}', expected a name that ends in .html: a page is written", output.flag, output.path));
+  if (output.kind == OutputKind::image && extension != ".png")
+    throw UsageError(
+        fmt::format("{}: found '{}', expected a name that ends in .png: a PNG is written", output.flag, output.path));
   if (output.kind != OutputKind::folder) return;
   for (const char* file : {".exr", ".png", ".svg", ".html", ".htm", ".csv", ".json", ".txt"})
     if (extension == file)

@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-enum class OutputKind { exr, page, folder };
+enum class OutputKind { exr, page, image, folder };
 
 struct Output {
   std::string flag;  // that names it, for messages: "-o"
@@ -14,7 +14,8 @@ struct Output {
 };
 
 // Nothing is opened and nothing is written. Throws
-//   UsageError     the name ends otherwise than the format that is written (.exr, .html), names a file where a folder
+//   UsageError     the name ends otherwise than the format that is written (.exr, .html, .png), names a file where a
+//   folder
 //                  is written, or is that of an input or of another output, which would be replaced
 //   ResourceError  the folder is missing or cannot be written, or something other than a file stands there already. A
 //                  folder that is an output need not exist: it is made, with those above it.

@@ -56,6 +56,7 @@ class HeaderReader {
     return values;
   }
   const ExrPart& part() const { return part_; }
+  ColourSpace space() const { return readSpace(part_, path_); }
   [[noreturn]] void refuse(const char* name, const std::string& found) const {
     throw MeaningError(
         fmt::format("{}: attribute {}: found '{}', expected what accumulate writes", path_, name, found));
@@ -94,6 +95,7 @@ OitInfo infoOf(const HeaderReader& header) {
   const std::optional<shading::WeightSettings> known = readWeightText(weight);
   if (!known) header.refuse("pellucid:weight", weight);
   info.weight = *known;
+  info.space = header.space();
   return info;
 }
 
@@ -174,6 +176,8 @@ NewExr fileOf(const OitPlanes& planes, const RimPlanes& rims) {
       {"pellucid:cameraOrigin", planes.camera.origin},
   };
   if (!planes.info.places.empty()) file.attributes["pellucid:places"] = planes.info.places;
+  putSpace(planes.info.space, file.attributes);
+  file.chromaticities = chromaticitiesToWrite(planes.info.space);
   float matrices[2][4][4];
   cameraToExr(planes.camera, matrices[0], matrices[1]);
   file.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);

@@ -27,6 +27,9 @@ struct Pair {
   void expectView(const Camera& found, const Camera& expected) const {
     if (!sameView(found, expected)) refuse("camera", viewText(found), viewText(expected));
   }
+  void expectSpace(const ColourSpace& found, const ColourSpace& expected) const {
+    if (!sameSpace(found, expected)) refuse("colour space", found.name, expected.name);
+  }
   [[noreturn]] void refuse(const char* what, const std::string& found, const std::string& expected) const {
     throw MeaningError(fmt::format("{}: {}: found {}, expected {} as in {}", file, what, found, expected, other));
   }
@@ -41,6 +44,7 @@ void expectSamePlanes(const OitPlanes& planes, const std::string& file, const Oi
   pair.expect("places", planes.info.places, before.info.places);
   pair.expect("data window", planes.data, before.data);
   pair.expectView(planes.camera, before.camera);
+  pair.expectSpace(planes.info.space, before.info.space);
   pair.expect("method", planes.info.method, before.info.method);
   if (!sameButForReference(planes.info.weight, before.info.weight))
     throw MeaningError(fmt::format("{}: weight: found {}, expected {} as in {}: accumulate it with --weight-from {}",
@@ -62,6 +66,14 @@ void refuseReference(const OitPlanes& planes, const std::string& file, const Oit
       "over the other; accumulate it with --weight-from {}",
       file, planes.info.weight.reference, before.info.weight.reference, fileBefore,
       planes.published() ? "halves" : "floats", fileBefore));
+}
+
+void expectSpaceOf(const ColourSpace& picture, const std::string& pictureFile, const OitPlanes& planes,
+                   const std::string& file) {
+  const SpaceSource source = planes.info.space.source;
+  const bool byRule = source == SpaceSource::fileRule || source == SpaceSource::defaultRule;
+  if (source == SpaceSource::flag || (byRule && picture.source != SpaceSource::chromaticities)) return;
+  Pair{file, pictureFile}.expectSpace(planes.info.space, picture);
 }
 
 void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,

@@ -97,9 +97,12 @@ std::string producersHelp() {
     text += fmt::format("{}: {}; picture {}, alpha {}, views {}; depth {}, {}, 1 unit is {:g} m, nothing hit: {}, ",
                         row.name, row.title, row.beauty, row.alpha, row.views, *row.depth ? row.depth : "z",
                         depthKindText(parseDepthKind(row.kind)), row.unit, row.nothing);
-    text += fmt::format("a pixel holds {}; normals {}; ambient occlusion {}; light groups {}; camera {}; facts: {}\n",
-                        row.filter, kSpaces[static_cast<int>(row.normals)], row.occlusion, row.lightGroups, row.camera,
-                        row.source);
+    text += fmt::format("a pixel holds {}; colours {}; normals {}; ambient occlusion {}; light groups {}; camera {}; ",
+                        row.filter,
+                        *row.space ? row.space + std::string(" unless chromaticities say otherwise")
+                                   : std::string("as chromaticities say"),
+                        kSpaces[static_cast<int>(row.normals)], row.occlusion, row.lightGroups, row.camera);
+    text += fmt::format("facts: {}\n", row.source);
   }
   return text;
 }

@@ -25,7 +25,7 @@ std::string depthLine(const OpaqueFile& file) {
   const OpaqueChoice& choice = file.choice;
   const std::size_t pixels = file.gbuffer.viewZ.size();
   std::string line =
-      fmt::format("depth: {}, {}, ", choice.depthChannel,
+      fmt::format("depth: {}{}{}, {}, ", choice.depthChannel, choice.depthFile.empty() ? "" : " of ", choice.depthFile,
                   choice.depthKind.empty() ? "planar" : depthKindWords(parseDepthKind(choice.depthKind)));
   if (choice.farPixels < pixels)
     line += fmt::format("{:.6g} to {:.6g}, median {:.6g} m, ", choice.least, choice.most, medianDepth(file.gbuffer));
@@ -40,9 +40,10 @@ std::vector<std::string> understoodLines(const OpaqueFile& file) {
   for (const std::string& channel : file.choice.beautyChannel)
     if (!channel.empty()) picture += " " + channel;
   const std::string part = file.document.parts[static_cast<std::size_t>(file.choice.beautyPart)].name;
-  if (!part.empty() && file.document.parts.size() > 1) picture += " of part " + part;
+  if (!part.empty() && file.document.ownParts > 1) picture += " of part " + part;
   if (!file.choice.preset.empty())
     picture += fmt::format(", preset {} by {}", file.choice.preset, file.choice.presetBy);
+  picture += ", colours in " + spaceText(file.space);
   return {picture, depthLine(file)};
 }
 

@@ -30,6 +30,7 @@ void accumulate(const AccumulateFlags& flags) {
   Stages& stages = compositor.journal().stages;
   stages.time("write", [&] { writePasses(flags.output, passes); });
   nlohmann::json report{{"output", flags.output}};
+  reportSpace(compositor.shot().opaque.space, report);
   reportRun(flags.run, stages, counts, compositor.device(), report);
 }
 

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/budget.h"
+#include "composite/cli/colour_flags.h"
+#include "composite/cli/preview_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/deep/flatten.h"
@@ -17,7 +19,19 @@ struct FlattenFlags {
   std::vector<std::string> files;
   std::string output, view, budget = "16M", type = "float";
   RunFlags run;
+  ColourFlags colour;
+  PreviewFlags preview;
 };
+
+// Over black, as the file says its colours.
+void writePreview(const FlattenFlags& flags, const FlatPicture& flat) {
+  if (!flags.preview.wanted()) return;
+  std::vector<std::string> notes;
+  Image<glm::vec4> picture(flat.data.width(), flat.data.height());
+  for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = glm::vec4(glm::vec3(flat.light[i]), 1.0f);
+  flags.preview.write(flags.colour.request(), statedSpace(flat.like, "", notes), picture);
+  say(notes);
+}
 
 ExtraLayer layersOf(const FlatPicture& flat) {
   const int width = flat.data.width(), height = flat.data.height();
@@ -43,6 +57,7 @@ ExtraLayer layersOf(const FlatPicture& flat) {
 
 void flattenVerb(const FlattenFlags& flags) {
   const Threads threads(flags.run.threads);
+  flags.preview.check(flags.colour.request(), true);
   Stages stages;
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
   const std::uint64_t most = parseBudget(flags.budget) / 32;
@@ -55,6 +70,7 @@ void flattenVerb(const FlattenFlags& flags) {
     say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half",
                     &flat.like));
   });
+  writePreview(flags, flat);
   nlohmann::json report{{"output", flags.output}, {"samples", flat.samples}};
   RunCounts counts;
   counts.fragments = flat.samples;
@@ -74,6 +90,8 @@ void addFlatten(CLI::App& app) {
   verb->add_option("--type", flags->type, "Of the flat channels")
       ->check(CLI::IsMember({"float", "half"}))
       ->capture_default_str();
+  flags->preview.addTo(*verb);
+  flags->colour.addConfigTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { flattenVerb(*flags); });
 }

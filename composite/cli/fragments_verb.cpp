@@ -26,6 +26,7 @@ DeepHeader headerOf(const Shot& shot) {
   header.pixelAspect = gbuffer.pixelAspect;
   header.channels = recordChannels();
   header.attributes = {{"pellucid:note", "oit.* are not premultiplied: do not composite them"}};
+  header.chromaticities = chromaticitiesToWrite(shot.opaque.space);
   if (shot.hasScene) header.camera = &shot.camera;
   return header;
 }
@@ -40,6 +41,7 @@ void fragmentsVerb(const FragmentsFlags& flags) {
   const RunCounts counts = compositor.listFragments(request, [&](const FragmentLists& lists) { rows.add(lists); });
   writer.finish();
   nlohmann::json report{{"output", flags.output}, {"fragments", counts.fragments}};
+  reportSpace(shot.opaque.space, report);
   reportRun(flags.run, compositor.journal().stages, counts, compositor.device(), report);
 }
 

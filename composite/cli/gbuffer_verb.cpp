@@ -5,11 +5,15 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/colour_flags.h"
+#include "composite/cli/preview_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
+#include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/shot.h"
 #include "engine_bridge/embree/opaque_render.h"
 #include "engine_bridge/gl/opaque_pass.h"
+#include "engine_bridge/scene/working_space.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -26,6 +30,8 @@ struct GbufferFlags {
   std::vector<std::string> overrides;
   double unit = 1.0, lumensPerWatt = 683.0;
   int device = -1;
+  ColourFlags colour;
+  PreviewFlags preview;
   RunFlags run;
 };
 
@@ -58,7 +64,7 @@ class Progress {
 };
 
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   Stages& stages) {
+                   const ColourSpace& space, Stages& stages) {
   if (flags.textureFilter == "mipmap")
     throw UsageError(
         "--texture-filter: found mipmap, expected bilinear or nearest with --renderer embree: its samples filter");
@@ -70,7 +76,8 @@ OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& 
   if (isColour(flags.environment))
     environment = Environment(parseColour(flags.environment, "--environment"));
   else if (!flags.environment.empty())
-    environment = stages.time("read environment", [&] { return readEnvironment(flags.environment, notes); });
+    environment =
+        stages.time("read environment", [&] { return readEnvironment(flags.environment, notes, space.fromRec709); });
   say(notes);
   OpaqueRenderSettings settings;
   settings.samples = flags.samples.value_or(settings.samples);
@@ -102,6 +109,16 @@ OpaquePlanes rasterise(const GbufferFlags& flags, const Scene& scene, const Came
   return stages.time("rasterise", [&] { return rasteriseOpaque(context, scene, camera, window, window, settings); });
 }
 
+// There is no picture yet to say it: linear Rec.709, unless --working-space names another.
+ColourSpace spaceToRender(const GbufferFlags& flags) {
+  const ColourRequest request = flags.colour.request();
+  checkColours(request);
+  const WorkingSpace colours(request);  // reads the config, whatever it is then asked for
+  if (request.workingSpace == "auto") return {};
+  std::vector<std::string> notes;
+  return colours.of({}, flags.output, notes);
+}
+
 void gbuffer(const GbufferFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
@@ -111,8 +128,11 @@ void gbuffer(const GbufferFlags& flags) {
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
-  const Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
+  const ColourSpace space = spaceToRender(flags);
+  flags.preview.check(flags.colour.request());
+  Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
   say(scene.notes);
+  say(bringInto(scene, space.fromRec709));
   GBuffer frame;
   frame.display = frame.data = window;
   const Camera camera = chooseCamera(cameraChoice(flags.camera), frame, scene, flags.scenes.front());
@@ -125,12 +145,16 @@ void gbuffer(const GbufferFlags& flags) {
 
   std::string device = "Embree";
   const OpaquePlanes planes = flags.renderer == "gl" ? rasterise(flags, scene, camera, window, stages, device)
-                                                     : trace(flags, scene, camera, window, stages);
+                                                     : trace(flags, scene, camera, window, space, stages);
   if (flags.renderer == "gl" && !planes.lights.empty()) say("lights without shadows: --renderer embree traces them");
   const std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
-  say(stages.time("write",
-                  [&] { return writeLayers(flags.output, window, window, layersOf(planes), attributes, &camera); }));
+  say(stages.time("write", [&] {
+    return writeLayers(flags.output, window, window, layersOf(planes), attributes, &camera, false, nullptr,
+                       chromaticitiesToWrite(space));
+  }));
   nlohmann::json report{{"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", opaque}};
+  reportSpace(space, report);
+  flags.preview.write(flags.colour.request(), space, planes.beauty);
   std::size_t triangles = 0;
   for (const Instance& instance : scene.instances)
     triangles += scene.primitives[static_cast<std::size_t>(instance.primitive)].indices.size() / 3;
@@ -175,6 +199,8 @@ void addGbuffer(CLI::App& app) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_option("--device", flags->device, "EGL device by number, see inspect --devices");
+  flags->colour.addTo(*verb, "Linear space to render in; auto is linear Rec.709, as glTF has it");
+  flags->preview.addTo(*verb);
   flags->run.addTo(*verb);
   verb->callback([flags] { gbuffer(*flags); });
 }

@@ -10,6 +10,7 @@
 #include "composite/cli/suggest.h"
 #include "composite/methods/method.h"
 #include "engine_bridge/scene/set_keys.h"
+#include "gbuffer/colour_space.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/producers.h"
 #include "gbuffer/tiers.h"
@@ -33,6 +34,7 @@ const Topic kTopics[] = {
     {"weights", "What --weight takes", weightsHelp},
     {"precision", "What --precision takes", tiersHelp},
     {"set", "What --set MATERIAL.key=value and glTF's extras.pellucid may say of a material", gltf::setKeysHelp},
+    {"spaces", "What --working-space takes without a config of OpenColorIO", spacesHelp},
     {"presets", "What --preset takes: the program that wrote the EXR; auto recognises it", producersHelp},
 };
 

@@ -9,6 +9,7 @@
 #include "composite/occlusion.h"
 #include "composite/pipeline/shot.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/side_files.h"
 
 namespace pellucid::cli {
 namespace {
@@ -68,7 +69,9 @@ void occlusionVerb(const OcclusionFlags& flags) {
   const OpaqueFile layer = stages.time("read layer", [&] {
     ReadOptions options = flags.read.options();
     options.beautyLayer = flags.layerBeauty;
-    options.depthChannel = flags.layerDepth;
+    options.depthFile = sideFileOf(flags.layerDepth);
+    options.depthChannel = options.depthFile ? "" : flags.layerDepth;
+    options.aovs.clear();
     return readFoliageLayer(flags.layer, options, flags.camera);
   });
   say(layer.notes);

@@ -78,7 +78,11 @@ std::pair<double, double> parseRange(const std::string& text, const std::string&
 }
 
 void SceneFlags::addTo(CLI::App& verb) {
-  verb.add_option("--camera", camera, "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
+  verb.add_option(
+          "--camera", cameras,
+          "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical); VIEW=CAMERA is that of "
+          "one view")
+      ->allow_extra_args(false);
   verb.add_option("--environment", environment,
                   "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");
   verb.add_option("--set", overrides, "MATERIAL.key=value: " + gltf::setKeyNames())->allow_extra_args(false);
@@ -104,6 +108,10 @@ void SceneFlags::addTo(CLI::App& verb) {
                   "--shadows exact decodes all triangles besides")
       ->capture_default_str();
   verb.add_option("--device", device, "EGL device by number, see inspect --devices");
+  colour.addTo(
+      verb,
+      "Linear space of the picture's colours, into which those of the glTF are brought; auto goes by the EXR's "
+      "chromaticities, the config's rules for files, the preset, and else takes linear Rec.709");
 }
 
 namespace {
@@ -148,6 +156,28 @@ CameraChoice cameraChoice(const std::string& text) {
   return camera;
 }
 
+CameraChoice cameraOfView(const std::vector<std::string>& cameras, const std::string& view,
+                          const std::vector<std::string>& views) {
+  std::string general, own;
+  for (const std::string& text : cameras) {
+    const std::string key = text.substr(0, text.find('='));
+    const bool placed = key == "eye" || key == "look" || key == "up" || key == "fov";
+    const bool ofView = key.size() < text.size() && !placed;
+    if (ofView && std::find(views.begin(), views.end(), key) == views.end())
+      throw UsageError(
+          fmt::format("--camera: found '{}', expected a glTF camera, eye=, look=, up= or fov=, or a view "
+                      "that --view names before the equals sign",
+                      text));
+    if (ofView && key != view) continue;
+    std::string& choice = ofView ? own : general;
+    if (!choice.empty())
+      throw UsageError(
+          fmt::format("--camera: found '{}' and '{}', expected one, or VIEW=CAMERA for each view", choice, text));
+    choice = ofView ? text.substr(key.size() + 1) : text;
+  }
+  return cameraChoice(own.empty() ? general : own);
+}
+
 SurroundingsChoice surroundingsChoice(const std::string& text) {
   if (text.empty()) return std::monostate();
   if (isColour(text)) return parseColour(text, "--environment");
@@ -162,7 +192,8 @@ void SceneFlags::into(Request& request) const {
   scene.overrides = overrides;
   scene.assetRoot = assetRoot;
   scene.streamBytes = pages;
-  request.shot.camera = cameraChoice(camera);
+  const std::string& view = request.shot.read.view;
+  request.shot.camera = cameraOfView(cameras, view, {view});
   request.shot.surroundings = surroundingsChoice(environment);
   request.filter = textureFilter == "mipmap"     ? TextureFilter::mipmap
                    : textureFilter == "bilinear" ? TextureFilter::bilinear
@@ -171,6 +202,7 @@ void SceneFlags::into(Request& request) const {
   request.residency.order = parseOrder(order);
   request.residency.budgetBytes = bytes - pages;
   request.device = device;
+  request.shot.colour = colour.request();
 }
 
 void RunFlags::addTo(CLI::App& verb) {

@@ -6,21 +6,28 @@
 #include <string>
 #include <vector>
 
+#include "composite/cli/colour_flags.h"
 #include "composite/cli/read_flags.h"
 #include "composite/pipeline/request.h"
 
 namespace pellucid::cli {
 
 struct SceneFlags {
-  std::string camera, environment, assetRoot;
+  std::vector<std::string> cameras;  // one, or VIEW=one for each view
+  std::string environment, assetRoot;
   std::vector<std::string> overrides;
   double lumensPerWatt = 683.0, unit = 1.0;  // metres in one unit of the glTF
   std::string textureFilter = "mipmap", mask = "smooth", order = "file", budget = "256M";
   int device = -1;
+  ColourFlags colour;
   void addTo(CLI::App& verb);
   void into(Request& request) const;  // throws UsageError
 };
 
+// The camera of a view, by its own entry or by the one for all. Throws UsageError for two, and for an entry of a view
+// that is none of `views`.
+CameraChoice cameraOfView(const std::vector<std::string>& cameras, const std::string& view,
+                          const std::vector<std::string>& views);
 CameraChoice cameraChoice(const std::string& text);              // "", a name or eye=...;look=...; throws UsageError
 SurroundingsChoice surroundingsChoice(const std::string& text);  // "", R,G,B or a file; throws UsageError
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gbuffer/opaque_io.h"
 
@@ -10,9 +11,11 @@ namespace pellucid::cli {
 
 struct ReadFlags {
   std::string preset = "auto", beauty, view, depth, depthKind;
+  std::vector<std::string> aovs;
   std::optional<double> farValue, unit;
-  void addTo(CLI::App& verb);
-  ReadOptions options() const;
+  //   allViews  whether --view takes all of them
+  void addTo(CLI::App& verb, bool allViews = false);
+  ReadOptions options() const;  // throws UsageError
 };
 
 }  // namespace pellucid::cli

@@ -22,10 +22,10 @@ constexpr NamedLayer kLayers[] = {
     {"count", LayerName::count},
 };
 
-void addCommon(CLI::App& verb, RenderFlags& flags) {
+void addCommon(CLI::App& verb, RenderFlags& flags, bool allViews) {
   verb.add_option("opaque", flags.opaque, "EXR with beauty and depth")->required();
   verb.add_option("scenes", flags.inputs, "glTF, GLB or deep EXR with the transparent things")->required();
-  flags.read.addTo(verb);
+  flags.read.addTo(verb, allViews);
   flags.scene.addTo(verb);
   flags.shadow.addTo(verb);
   flags.fog.addTo(verb);
@@ -66,7 +66,7 @@ void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
 }
 
 void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
-  addCommon(verb, *this);
+  addCommon(verb, *this, what.allViews);
   foliage.addTo(verb, what.keepsRimsApart);
   if (what.weighs && what.precision) method.addTo(verb, what.listsToo, what.usual);
   if (what.weighs && !what.precision) method.addWeightTo(verb, true);
@@ -127,6 +127,15 @@ void RenderFlags::paintInto(Request& request) const {
   PaintSystems painted{systems == "file" ? SystemRule::file : SystemRule::node, std::nullopt};
   if (listed) painted.method = listed->method;
   request.paint = painted;
+}
+
+Request RenderFlags::requestOfView(const std::string& view, const std::vector<std::string>& views) const {
+  RenderFlags general = *this;
+  general.scene.cameras.clear();
+  Request request = general.request();
+  request.shot.read.view = view;
+  request.shot.camera = cameraOfView(scene.cameras, view, views);
+  return request;
 }
 
 Request RenderFlags::request() const {

@@ -24,6 +24,7 @@ struct RenderVerb {
   bool bends = true;      // --refract and --diffusion
   bool resolves = true;   // lookups, --resolve, --self-modulation and --layers
   bool keepsRimsApart = false;
+  bool allViews = false;  // --view all
   int defaultPasses = 1;
   UsualMethod usual = UsualMethod::truth;
 };
@@ -47,6 +48,8 @@ struct RenderFlags {
 
   void addTo(CLI::App& verb, const RenderVerb& what);
   Request request() const;  // throws UsageError
+  // The same of one view of several, with its own camera.
+  Request requestOfView(const std::string& view, const std::vector<std::string>& views) const;
 
  private:
   void paintInto(Request& request) const;

@@ -1,7 +1,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/colour_flags.h"
 #include "composite/cli/foliage_flags.h"
+#include "composite/cli/preview_flags.h"
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
@@ -19,6 +21,8 @@ struct ResolveFlags {
   LookupFlags lookup;
   SelfModulationFlag selfModulation;
   RimFlags rims;
+  ColourFlags colour;
+  PreviewFlags preview;
 };
 
 PlanesRequest requestOf(const ResolveFlags& flags) {
@@ -36,6 +40,8 @@ PlanesRequest requestOf(const ResolveFlags& flags) {
 
 void resolveVerb(const ResolveFlags& flags) {
   const Threads threads(flags.run.threads);
+  const ColourRequest colour = flags.colour.request();
+  flags.preview.check(colour, true);
   Journal notes = journal();
   const ResolvedPlanes result = resolvePlanes(requestOf(flags), notes);
   say(notes.time("write", [&] {
@@ -43,6 +49,8 @@ void resolveVerb(const ResolveFlags& flags) {
                      {{"pellucid:method", result.info.method}});
   }));
   nlohmann::json report{{"output", flags.output}};
+  reportSpace(result.opaque.space, report);
+  flags.preview.write(colour, result.opaque.space, result.picture.rgba);
   reportRun(flags.run, notes.stages, {}, result.device, report);
 }
 
@@ -61,6 +69,8 @@ void addResolve(CLI::App& app) {
   flags->lookup.addResolverTo(*verb);
   flags->rims.addTo(*verb);
   addLayersOption(*verb, flags->layers);
+  flags->preview.addTo(*verb);
+  flags->colour.addConfigTo(*verb);
   verb->callback([flags] { resolveVerb(*flags); });
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gbuffer/output_checks.h"
+#include "gbuffer/side_files.h"
 
 namespace pellucid::cli {
 namespace {
@@ -15,16 +16,23 @@ struct OutputFlag {
   OutputKind kind;
 };
 constexpr OutputFlag kOutputs[] = {
-    {"--output", "study", OutputKind::folder},
-    {"--output", "", OutputKind::exr},
-    {"--shadow-views", "", OutputKind::exr},
-    {"--html", "", OutputKind::page},
+    {"--output", "study", OutputKind::folder}, {"--output", "", OutputKind::exr},
+    {"--shadow-views", "", OutputKind::exr},   {"--html", "", OutputKind::page},
+    {"--preview", "", OutputKind::image},
 };
 
 OutputKind kindOf(const OutputFlag& flag, const std::string& verb) {
   for (const OutputFlag& each : kOutputs)
     if (std::string(each.flag) == flag.flag && each.verb == verb) return each.kind;
   return flag.kind;
+}
+
+// The file that a flag's value names; a channel or a number names none that exists.
+std::string fileOf(const std::string& flag, const std::string& text) {
+  const auto equals = text.find('=');
+  if (flag == "--aov") return equals == std::string::npos ? text : text.substr(equals + 1);
+  const auto side = flag == "--depth" ? sideFileOf(text) : std::nullopt;
+  return side ? side->path : text;
 }
 
 void check(const CLI::App& verb) {
@@ -38,6 +46,11 @@ void check(const CLI::App& verb) {
   std::vector<std::string> inputs;
   for (const CLI::Option* option : verb.get_options())
     if (option->get_positional()) inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+  for (const char* flag : {"--depth", "--aov", "--ocio", "--environment"}) {
+    const CLI::Option* option = verb.get_option_no_throw(flag);
+    for (const std::string& text : option ? option->results() : std::vector<std::string>())
+      inputs.push_back(fileOf(flag, text));
+  }
   checkOutputs(outputs, inputs);
 }
 

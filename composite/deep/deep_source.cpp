@@ -51,6 +51,13 @@ DeepSource::DeepSource(const std::string& path, const DepthConverter& depth, con
                                    windowText(reader_.display()), windowText(shot.display)));
 }
 
+void DeepSource::bringInto(const ColourSpace& space) {
+  const std::optional<ColourSpace> own =
+      channels_.chromaticities ? spaceOf(*channels_.chromaticities) : std::optional<ColourSpace>();
+  toSpace_.reset();
+  if (own && !sameSpace(*own, space)) toSpace_ = space.fromRec709 * glm::inverse(own->fromRec709);
+}
+
 std::vector<std::string> DeepSource::notes() const {
   std::vector<std::string> notes;
   if (!channels_.note.empty()) notes.push_back(channels_.note);
@@ -134,6 +141,23 @@ class DeepMerge {
     std::vector<double> cuts;
   };
 
+  // Light goes through the matrix, and so does the white light that is let through or hidden.
+  static void convert(const glm::dmat3& matrix, DeepSample& sample) {
+    sample.light = matrix * sample.light;
+    const double grey = std::min({sample.opacity.x, sample.opacity.y, sample.opacity.z});  // which keeps its bits
+    const glm::dvec3 hidden = grey + matrix * (glm::dvec3(sample.opacity) - grey);
+    sample.opacity = glm::dvec4(glm::clamp(hidden, glm::dvec3(0.0), glm::dvec3(1.0)), sample.opacity.w);
+  }
+  static Fragment converted(const glm::dmat3& matrix, Fragment fragment) {
+    fragment.radiance = glm::vec3(matrix * glm::dvec3(fragment.radiance));
+    fragment.transmission = glm::min(pellucid::converted(matrix, fragment.transmission), glm::vec3(1.0f));
+    return fragment;
+  }
+  static Fragment recordOf(const DeepSource& source, const DeepRows& rows, std::uint64_t i, double z) {
+    const Fragment record = recordAt(source.channels_, rows, i, z);
+    return source.toSpace_ ? converted(*source.toSpace_, record) : record;
+  }
+
   // Appends the pixel's fragments, returns its solid.
   glm::vec4 pixel(int x, int y, std::vector<Fragment>& out, Scratch& scratch, std::vector<DeepOddities>& oddities) {
     const std::size_t own = pixelOf(lists_.window, x, y), had = out.size();
@@ -151,6 +175,7 @@ class DeepMerge {
       for (std::uint64_t i = first; i < rows_[s].offsets[index + 1]; ++i) {
         DeepSample sample;
         if (!sampleAt(source.channels_, rows_[s], i, source.depth_, x, y, sample, oddities[s])) continue;
+        if (source.toSpace_) convert(*source.toSpace_, sample);
         if (!(sample.z > 0.0) || sample.z > surface) continue;  // behind the camera or the surface
         if (sample.isVolume() && sample.zBack > surface) sample = partOfVolume(sample, sample.z, surface);
         const bool opaque = sample.opacity.x >= 1.0 && sample.opacity.y >= 1.0 && sample.opacity.z >= 1.0;
@@ -167,7 +192,7 @@ class DeepMerge {
           scratch.volumes.push_back(sample);
           continue;
         }
-        Fragment fragment = source.channels_.hasRecord() ? recordAt(source.channels_, rows_[s], i, sample.z)
+        Fragment fragment = source.channels_.hasRecord() ? recordOf(source, rows_[s], i, sample.z)
                                                          : fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
         fragment.identity = identityOf(source.index_, x, y, i - first);
         out.push_back(fragment);

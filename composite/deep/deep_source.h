@@ -20,6 +20,8 @@ class DeepSource {
   DeepSource(const std::string& path, const DepthConverter& depth, const GBuffer& shot, std::uint32_t index,
              const std::string& view = "");
   const std::string& path() const { return path_; }
+  // Brings what its samples send and let through into the picture's space, where the file states another.
+  void bringInto(const ColourSpace& space);
   bool mayScatter() const { return channels_.hasRecord(); }  // samples say how they refract and diffuse
   std::vector<std::string> notes() const;                    // what was skipped or clamped so far
 
@@ -30,6 +32,7 @@ class DeepSource {
   std::uint32_t index_;
   DeepChannels channels_;
   DeepReader reader_;
+  std::optional<glm::dmat3> toSpace_;  // empty: its colours are in the picture's space already
   DeepOddities oddities_;
 };
 

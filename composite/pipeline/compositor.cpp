@@ -228,7 +228,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
   if (shot_->deepOpaque) expectPlacesHold(request);
   const Run run = prepare(request);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
-  const OtherSolids others(request.heldOutBy, gbuffer, run.plan.passes);
+  const OtherSolids others(request.heldOutBy, gbuffer, shot_->opaque.space, run.plan.passes);
   RunCounts counts;
   Plan sums = sumsPlanOf(run.plan, facts_);
   sums.heldOut = run.plan.heldOut;
@@ -252,6 +252,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
       others.addTo(made.planes, i);
     }
     made.planes.info.method = made.scatter.info.method = sums.method;
+    made.planes.info.space = made.scatter.info.space = shot_->opaque.space;
     made.edges = run.plan.edges;
     if (i == 0) made.relit = relitPicture(*run.lighting);
     shows = shows || anyLayers(made.planes);
@@ -293,11 +294,17 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
   return counts;
 }
 
+std::map<std::string, std::string> Compositor::attributes(const Result& result) const {
+  std::map<std::string, std::string> attributes{{kMethodAttribute, result.plan.method},
+                                                {kWeightAttribute, weightText(result.plan.pass.weight)}};
+  const ColourSpace& space = shot_->opaque.space;
+  if (!space.isRec709()) attributes["pellucid:workingSpace"] = space.name;
+  return attributes;
+}
+
 std::vector<std::string> Compositor::write(const std::string& path, const Result& result) const {
-  const std::map<std::string, std::string> attributes{{kMethodAttribute, result.plan.method},
-                                                      {kWeightAttribute, weightText(result.plan.pass.weight)}};
   return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,
-                   attributes);
+                   attributes(result));
 }
 
 }  // namespace pellucid

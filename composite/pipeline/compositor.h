@@ -1,6 +1,7 @@
 // The whole of Pellucid behind one class: a shot is loaded once, then any number of requests are carried out on it.
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +49,9 @@ class Compositor {
   RunCounts listFragments(const Request& request, const ListSink& sink);
   // The opaque picture with the result's beauty in it, and its layers. Returns the notes.
   std::vector<std::string> write(const std::string& path, const Result& result) const;
+
+  // What the output's header says of how it was made.
+  std::map<std::string, std::string> attributes(const Result& result) const;
 
   Journal& journal() { return journal_; }
   std::string device() const { return device_.description(); }

@@ -9,7 +9,8 @@
 
 namespace pellucid {
 
-OtherSolids::OtherSolids(const std::vector<std::string>& paths, const GBuffer& gbuffer, int passes) {
+OtherSolids::OtherSolids(const std::vector<std::string>& paths, const GBuffer& gbuffer, const ColourSpace& space,
+                         int passes) {
   for (const std::string& path : paths) {
     const std::vector<PassPlanes> others = readPasses(path);
     if (others.size() != static_cast<std::size_t>(passes))
@@ -20,6 +21,9 @@ OtherSolids::OtherSolids(const std::vector<std::string>& paths, const GBuffer& g
       if (planes.data != gbuffer.data || planes.display != gbuffer.display)
         throw MeaningError(
             fmt::format("{}: --held-out-by: found planes of another window, expected the picture's", path));
+      if (!sameSpace(planes.info.space, space))
+        throw MeaningError(fmt::format("{}: --held-out-by: found solids in the colour space {}, expected {}", path,
+                                       planes.info.space.name, space.name));
       if (solids_.size() <= i) {
         solids_.push_back(planes.solid);
         continue;

@@ -11,8 +11,9 @@ namespace pellucid {
 // Nearest solids of each pass of some files of planes.
 class OtherSolids {
  public:
-  // Throws what readPasses() throws, and MeaningError for planes of another window or number of passes.
-  OtherSolids(const std::vector<std::string>& paths, const GBuffer& gbuffer, int passes);
+  // Throws what readPasses() throws, and MeaningError for planes of another window, colour space or number of
+  // passes.
+  OtherSolids(const std::vector<std::string>& paths, const GBuffer& gbuffer, const ColourSpace& space, int passes);
   bool empty() const { return solids_.empty(); }
   // The picture's depth with the solids of a pass in front of it.
   GBuffer before(const GBuffer& gbuffer, int pass) const;

@@ -67,8 +67,15 @@ using CameraChoice = std::variant<std::monostate, NamedCamera, PlacedCamera>;
 struct PictureOfSurroundings {
   std::string path;  // lat-long EXR
 };
-// Nothing: the median of the sky's pixels. A colour is scene-linear radiance.
+// Nothing: the median of the sky's pixels. A colour is radiance in the picture's own space, as that median is.
 using SurroundingsChoice = std::variant<std::monostate, glm::vec3, PictureOfSurroundings>;
+
+// What says which linear space the picture's colours are in.
+struct ColourRequest {
+  std::string config;               // of OpenColorIO, a file; "" for the built-in one
+  std::string configBy = "--ocio";  // who names it, for messages
+  std::string workingSpace = "auto";
+};
 
 struct ShotRequest {
   std::string opaque;               // EXR, flat or deep
@@ -77,6 +84,7 @@ struct ShotRequest {
   SceneOptions scene;
   CameraChoice camera;
   SurroundingsChoice surroundings;
+  ColourRequest colour;
 };
 
 enum class ShadowSource { off, rays, raysOpaque, maps };  // raysOpaque: as if what covers half hid all

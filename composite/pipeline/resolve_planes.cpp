@@ -184,6 +184,8 @@ GBuffer readBackground(const PlanesRequest& request, const PassPlanes& first, Re
   const OitPlanes& planes = first.planes;
   result.opaque =
       journal.time("read picture", [&] { return readPictureFile(request.opaque, request.read, &planes.camera, deep); });
+  expectSpaceOf(result.opaque.space, request.opaque, planes, request.planes[0]);
+  result.opaque.space = planes.info.space;
   result.camera = planes.camera;
   result.info = planes.info;
   if (!deep) journal.note(understoodLines(result.opaque));

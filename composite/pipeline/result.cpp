@@ -16,4 +16,15 @@ void RunCounts::add(const PassStatistics& statistics) {
   shadowSeconds += statistics.shadowSeconds;
 }
 
+void RunCounts::add(const RunCounts& view) {
+  chunks += view.chunks;
+  tiles += view.tiles;
+  fragments += view.fragments;
+  tolerance.certified += view.tolerance.certified;
+  tolerance.recomputed += view.tolerance.recomputed;
+  clamps += view.clamps;
+  shadowRays += view.shadowRays;
+  shadowSeconds += view.shadowSeconds;
+}
+
 }  // namespace pellucid

@@ -24,6 +24,7 @@ struct RunCounts {
   std::vector<std::string> pruned = {};
 
   void add(const PassStatistics& statistics);  // what one pass did
+  void add(const RunCounts& view);             // what another view of the same picture took
 };
 
 struct Result {

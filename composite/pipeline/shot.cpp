@@ -6,11 +6,14 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/same_cameras.h"
 #include "engine_bridge/embree/environment.h"
+#include "engine_bridge/scene/working_space.h"
 #include "gbuffer/depth_kind.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/part_camera.h"
+#include "gbuffer/side_files.h"
 
 namespace pellucid {
 namespace {
@@ -66,6 +69,7 @@ OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const
   file.gbuffer.data = part.data;
   file.gbuffer.pixelAspect = part.pixelAspect;
   readCamera(part, file.metresPerUnit, file);
+  file.space = statedSpace(part, "", file.notes);
   if (options.framingAlone) return file;
   if (!camera && file.gbuffer.camera) camera = &*file.gbuffer.camera;
   const DepthConverter depth = deepDepth(options, camera, part.display, file.document.path);
@@ -95,13 +99,22 @@ OpaqueFile interpretPicture(ExrDocument document, const ReadOptions& options, co
 void readPicture(const ShotRequest& request, Shot& shot) {
   ReadOptions framing = request.read;
   framing.framingAlone = true;
-  OpaqueFile first = interpretPicture(readExr(request.opaque), framing, nullptr, shot.deepOpaque);
+  OpaqueFile first = interpretPicture(readWithSides(request.opaque, request.read), framing, nullptr, shot.deepOpaque);
   // Deep samples lie in the picture's own pixels: they need no camera, but fog does.
   shot.hasCamera = shot.hasScene || first.gbuffer.camera || !std::holds_alternative<std::monostate>(request.camera);
   if (shot.hasCamera)
     shot.camera = chooseCamera(request.camera, first.gbuffer, shot.scene, request.opaque, first.cameraRefusal);
   shot.opaque = interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr,
                                  shot.deepOpaque);
+}
+
+// What was understood of the picture.
+std::vector<std::string> linesOf(const Shot& shot) {
+  const ColourSpace& space = shot.opaque.space;
+  std::vector<std::string> lines{"picture: deep samples, colours in " + spaceText(space)};
+  if (!shot.deepOpaque) lines = understoodLines(shot.opaque);
+  if (space.source == SpaceSource::nothing) lines[0] += " (--working-space NAME would)";
+  return lines;
 }
 
 void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal) {
@@ -112,7 +125,7 @@ void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal
   if (const auto* picture = std::get_if<PictureOfSurroundings>(&request.surroundings)) {
     std::vector<std::string> notes;
     shot.environment = journal.time("prepare environment", [&] {
-      const Environment environment = readEnvironment(picture->path, notes);
+      const Environment environment = readEnvironment(picture->path, notes, shot.opaque.space.fromRec709);
       return std::make_shared<const Surroundings>(prepareSurroundings(environment.map()));
     });
     journal.note(notes);
@@ -135,7 +148,7 @@ void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal
 
 OpaqueFile readPictureFile(const std::string& path, const ReadOptions& options, const Camera* camera,
                            std::unique_ptr<DeepOpaque>& deep) {
-  return interpretPicture(readExr(path), options, camera, deep);
+  return interpretPicture(readWithSides(path, options), options, camera, deep);
 }
 
 bool isExrName(const std::string& path) {
@@ -184,20 +197,26 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   std::vector<std::string> deep;
   for (const std::string& path : request.inputs) (isExrName(path) ? deep : shot->geometry).push_back(path);
   shot->hasScene = !shot->geometry.empty();
+  const WorkingSpace colours(request.colour);
   SceneOptions options = request.scene;
   if (traced) options.streamBytes = 0;
   journal.time("read scene", [&] { shot->scene = loadScene(shot->geometry, options); });
   journal.note(shot->scene.notes);
   journal.time("read picture", [&] { readPicture(request, *shot); });
-  if (!shot->deepOpaque) journal.note(understoodLines(shot->opaque));
-  journal.note(shot->opaque.notes);
+  OpaqueFile& picture = shot->opaque;
+  picture.space = colours.of(picture.space, request.opaque, picture.notes);
+  journal.note(journal.time("read scene", [&] { return bringInto(shot->scene, picture.space.fromRec709); }));
+  journal.note(linesOf(*shot));
+  journal.note(picture.notes);
   journal.time("read deep", [&] {
-    const GBuffer& picture = shot->opaque.gbuffer;
+    const GBuffer& gbuffer = picture.gbuffer;
     const Camera* camera = shot->hasCamera ? &shot->camera : nullptr;
-    for (std::size_t i = 0; i < deep.size(); ++i)
+    for (std::size_t i = 0; i < deep.size(); ++i) {
       shot->deep.push_back(std::make_unique<DeepSource>(deep[i],
-                                                        deepDepth(request.read, camera, picture.display, deep[i]),
-                                                        picture, static_cast<std::uint32_t>(i), request.read.view));
+                                                        deepDepth(request.read, camera, gbuffer.display, deep[i]),
+                                                        gbuffer, static_cast<std::uint32_t>(i), request.read.view));
+      shot->deep.back()->bringInto(picture.space);
+    }
   });
   if (shot->hasScene) {
     std::optional<double> residual;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/fog_step.h"
 #include "composite/pipeline/foliage_step.h"
 #include "composite/pipeline/refusals.h"
@@ -15,6 +16,7 @@ void validate(const Request& request) {
     if (row.applies(request))
       throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
+  checkColours(request.shot.colour);
   checkShadows(request.shadows);
   checkFoliage(request.foliage);
   if (request.fog.on() && request.fog.file.empty())

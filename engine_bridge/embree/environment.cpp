@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gbuffer/channels.h"
+#include "gbuffer/colour_space.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/exr_document.h"
 #include "gbuffer/producers.h"
@@ -98,7 +99,7 @@ float Environment::density(glm::vec3 towards) const {
   return static_cast<float>(luminance(map_.at(x, y)) / total_ * width / (2.0 * M_PI));
 }
 
-Environment readEnvironment(const std::string& path, std::vector<std::string>& notes) {
+Environment readEnvironment(const std::string& path, std::vector<std::string>& notes, const glm::dmat3& fromRec709) {
   const ExrDocument document = readExr(path);
   const std::vector<NamedChannel> channels = nameChannels(document);
   const Producer* producer = recogniseProducer(document, channels, "auto").row;
@@ -116,6 +117,11 @@ Environment readEnvironment(const std::string& path, std::vector<std::string>& n
     }
   if (repaired > 0)
     notes.push_back(fmt::format("{}: {} values are negative or not finite and count as black", path, repaired));
+  const ColourSpace own = statedSpace(part, producer ? producer->space : "", notes);
+  if (own.fromRec709 != fromRec709) {
+    const glm::dmat3 matrix = fromRec709 * glm::inverse(own.fromRec709);
+    for (std::size_t i = 0; i < map.size(); ++i) map[i] = converted(matrix, map[i]);
+  }
   return Environment(std::move(map));
 }
 

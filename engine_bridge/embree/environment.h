@@ -39,7 +39,10 @@ class Environment {
 };
 
 // Beauty of an EXR twice as wide as high, or as wide as it likes. What is negative or not finite counts as black, which
-// is noted. Throws InputError (missing, damaged), MeaningError (no beauty, or two).
-Environment readEnvironment(const std::string& path, std::vector<std::string>& notes);
+// is noted. Its colours are those of its own space, linear Rec.709 where it states none, and are brought into another.
+// Throws InputError (missing, damaged), MeaningError (no beauty, or two).
+//   fromRec709  of the space to bring it into
+Environment readEnvironment(const std::string& path, std::vector<std::string>& notes,
+                            const glm::dmat3& fromRec709 = glm::dmat3(1.0));
 
 }  // namespace pellucid

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "engine_bridge/scene/textures.h"
+#include "gbuffer/colour_space.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::gltf {
@@ -84,8 +85,17 @@ bool readSamples(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int chann
 struct Samples {
   int width = 0, height = 0, channels = 0;  // at most 4 of them
   bool floats = false, eightBit = false;
+  std::optional<Chromaticities> chromaticities;  // of EXR
   std::vector<float> values;
 };
+
+std::optional<Chromaticities> statedBy(const OIIO::ImageSpec& spec) {
+  const OIIO::ParamValue* stated = spec.find_attribute("chromaticities");
+  if (!stated || stated->type() != OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8)) return std::nullopt;
+  const auto* numbers = static_cast<const float*>(stated->data());
+  const auto pair = [&](int i) { return glm::dvec2(glm::vec2(numbers[2 * i], numbers[2 * i + 1])); };
+  return Chromaticities{pair(0), pair(1), pair(2), pair(3)};
+}
 
 Samples readImage(const std::vector<std::uint8_t>& bytes, const std::string& format, const std::string& whose) {
   const auto refuse = [&](const std::string& rest) { throw InputError(printable(whose + " " + rest)); };
@@ -115,6 +125,7 @@ Samples readImage(const std::vector<std::uint8_t>& bytes, const std::string& for
   samples.height = spec.height;
   samples.channels = std::min(spec.nchannels, 4);
   samples.floats = spec.format.is_floating_point();
+  samples.chromaticities = statedBy(spec);
   samples.eightBit = spec.format.basetype == OIIO::TypeDesc::UINT8;
   if (!readSamples(*input, spec, samples.channels, samples.values))
     refuse(fmt::format("is damaged: {}", input->geterror()));
@@ -136,7 +147,7 @@ float linearFromSrgb(float encoded) {
 }
 
 Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse use, const std::string& whose,
-                             const std::string& name, Notes& notes) {
+                             const std::string& name, Notes& notes, glm::dmat3* fromRec709) {
   const std::string format = formatOf(bytes, name);
   if (bytes.empty()) throw InputError(printable(whose + " is empty; expected an encoded image"));
   if (!isWholeImage(bytes, format)) {
@@ -167,6 +178,8 @@ Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse us
     texel.a = std::min(texel.a, 1.0f);
     texels[i] = texel;
   }
+  if (fromRec709 && image.chromaticities && image.floats && use == TexelUse::colour)
+    if (const std::optional<ColourSpace> own = spaceOf(*image.chromaticities)) *fromRec709 = own->fromRec709;
   if (repaired > 0) notes.add(fmt::format("{} values of {} are negative or not finite; 0 is used", repaired, name));
   return texels;
 }

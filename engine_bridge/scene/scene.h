@@ -39,8 +39,11 @@ struct Sampling {
 };
 
 struct Texture : Sampling {
-  std::string name;         // for messages: image name or file
-  Image<glm::vec4> texels;  // straight alpha; linear when `colour`, else as stored, 0..1. Row 0 is v = 0.
+  std::string name;     // for messages: image name or file
+  bool colour = false;  // rather than data
+  // To the linear space of a colour's texels: that of floating-point images which state one, until bringInto().
+  glm::dmat3 fromRec709{1.0};
+  Image<glm::vec4> texels;  // straight alpha; linear light when `colour`, else as stored, 0..1. Row 0 is v = 0.
 };
 
 struct TextureRef {

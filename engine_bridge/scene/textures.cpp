@@ -131,7 +131,8 @@ Texture TextureReader::open(std::size_t index, TexelUse use, const std::string& 
     bytes.assign(view.bytes().begin(), view.bytes().end());
     if (view.file()) view.file()->letGo(view.bytes());
   }
-  result.texels = decodeImage(bytes, use, whose, external ? result.name : "", *notes_);
+  result.colour = use == TexelUse::colour;
+  result.texels = decodeImage(bytes, use, whose, external ? result.name : "", *notes_, &result.fromRec709);
   texels_ += result.texels.size();
   if (texels_ > kMostTexels) {
     throw ResourceError(

@@ -19,9 +19,10 @@ enum class TexelUse {
 // Decodes PNG, JPEG and whatever else OpenImageIO reads from memory, alpha left straight.
 //   whose   begins an error's sentence: "scene.gltf: material glass: image wood.png"
 //   name    its extension tells the format where the content has no signature
+//   fromRec709  is given the space that a floating-point colour image states; may be null
 // Throws InputError; texels that are not finite become 0 and are noted.
 Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse use, const std::string& whose,
-                             const std::string& name, Notes& notes);
+                             const std::string& name, Notes& notes, glm::dmat3* fromRec709 = nullptr);
 
 // False when a PNG or JPEG ends before its last marker. Other formats' readers notice themselves.
 //   format  "png", "jpg" or another extension, by the content's signature

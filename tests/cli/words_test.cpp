@@ -168,6 +168,7 @@ TEST(Help, Lists) {
   has("weights", {"eq5", "eq10z", "power:K", "uniform"});
   has("precision", {"published", "float", "exact"});
   has("set", {"thin", "castsShadow", "lowResolution"});
+  has("spaces", {"auto", "ACEScg", "lin_rec709", "Linear P3-D65"});
   has("presets", {"auto", "blender"});
   has("composite", {"--method", "pellucid composite"});
   EXPECT_EQ(runProgram({"help"}).out, runProgram({"--help"}).out);

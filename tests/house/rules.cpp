@@ -38,6 +38,7 @@ const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine", 
                               {"GL/", {"engine_bridge/gl", "engine_bridge/c", "samples/vtk"}},
                               {"embree3/", {"engine_bridge/embree"}},
                               {"openvdb/", {"engine_bridge/scene"}},
+                              {"OpenColorIO/", {"composite/colour"}},
                               {"OpenEXR/", {"gbuffer", "samples/generate"}}};
 
 bool isBelow(const std::string& path, const std::string& folder) {

@@ -1,0 +1,24 @@
+// Flags that say which linear space colours are in.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "composite/pipeline/request.h"
+
+namespace pellucid::cli {
+
+struct ColourFlags {
+  std::string config, workingSpace = "auto";
+  //   help  of --working-space
+  void addTo(CLI::App& verb, const std::string& help);
+  // --ocio alone, for what is only shown.
+  void addConfigTo(CLI::App& verb);
+  // The config is that of --ocio, else of $OCIO.
+  ColourRequest request() const;
+};
+
+// Puts the space and what says it into a report.
+void reportSpace(const ColourSpace& space, nlohmann::json& report);
+
+}  // namespace pellucid::cli

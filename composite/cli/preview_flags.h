@@ -1,0 +1,27 @@
+// Flags of a PNG beside the picture, as a display shows it.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "composite/colour/display.h"
+#include "composite/pipeline/request.h"
+
+namespace pellucid::cli {
+
+struct PreviewFlags {
+  std::string file, display, viewTransform;
+  double exposure = 0.0;
+  void addTo(CLI::App& verb);
+  bool wanted() const { return !file.empty(); }
+  // What can be refused before any work. Throws UsageError, and what ColourConfig::read throws.
+  //   forIt  the config serves the preview alone
+  void check(const ColourRequest& colour, bool forIt = false) const;
+  // Writes it, where it is wanted.
+  //   picture  as composited, in its own space; over black where it is not opaque
+  void write(const ColourRequest& colour, const ColourSpace& space, const Image<glm::vec4>& picture) const;
+
+ private:
+  const CLI::Option* exposureOption_ = nullptr;
+};
+
+}  // namespace pellucid::cli

@@ -1,0 +1,123 @@
+#include "composite/colour/display.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "composite/colour/library.h"
+#include "gbuffer/atomic_file.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid {
+namespace {
+
+std::string refusal(const char* flag, const std::string& found, const ColourConfig::Impl& library,
+                    const std::string& names) {
+  return fmt::format("{}: found '{}', expected one of {} in {}", flag, found, names.empty() ? "none" : names,
+                     library.title());
+}
+
+// The choice with the config's own where nothing is said.
+DisplayChoice settled(const ColourConfig::Impl& library, DisplayChoice choice) {
+  const ocio::Config& config = *library.config;
+  std::string displays, views;
+  bool found = false;
+  if (choice.display.empty()) choice.display = config.getDefaultDisplay();
+  for (int i = 0; i < config.getNumDisplays(); ++i) {
+    displays += (displays.empty() ? "" : ", ") + std::string(config.getDisplay(i));
+    found = found || choice.display == config.getDisplay(i);
+  }
+  if (!found) throw UsageError(refusal("--display", choice.display, library, displays));
+  const char* display = choice.display.c_str();
+  if (choice.view.empty()) choice.view = config.getDefaultView(display);
+  found = false;
+  for (int i = 0; i < config.getNumViews(display); ++i) {
+    views += (views.empty() ? "" : ", ") + std::string(config.getView(display, i));
+    found = found || choice.view == config.getView(display, i);
+  }
+  if (!found) throw UsageError(refusal("--view-transform", choice.view, library, views));
+  return choice;
+}
+
+// Whether the view shows numbers as they are.
+bool isRaw(const ocio::Config& config, const DisplayChoice& choice) {
+  const auto space =
+      config.getColorSpace(config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str()));
+  return space && space->isData();
+}
+
+ocio::ConstCPUProcessorRcPtr processorFor(const ColourConfig::Impl& library, const DisplayChoice& choice,
+                                          const ColourSpace& space) {
+  const glm::dmat3 exposure(std::exp2(choice.exposure));
+  ocio::GroupTransformRcPtr steps = ocio::GroupTransform::Create();
+  if (isRaw(*library.config, choice)) {
+    steps->appendTransform(matrixTransform(exposure));
+  } else {
+    const KnownSpace known = library.known();
+    steps->appendTransform(matrixTransform(known.fromRec709 * glm::inverse(space.fromRec709) * exposure));
+    ocio::DisplayViewTransformRcPtr shown = ocio::DisplayViewTransform::Create();
+    shown->setSrc(known.name.c_str());
+    shown->setDisplay(choice.display.c_str());
+    shown->setView(choice.view.c_str());
+    steps->appendTransform(shown);
+  }
+  return library.config->getProcessor(steps)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_VERY_GOOD);
+}
+
+}  // namespace
+
+struct DisplayTransform::Impl {
+  ocio::ConstCPUProcessorRcPtr processor;
+};
+
+DisplayTransform::DisplayTransform(const ColourConfig& config, const DisplayChoice& choice, const ColourSpace& space)
+    : impl_(std::make_unique<Impl>()) {
+  const DisplayChoice chosen = settled(config.library(), choice);
+  try {
+    impl_->processor = processorFor(config.library(), chosen, space);
+  } catch (const ocio::Exception& error) {
+    throw InputError(fmt::format("{}: display {}, view {}: {}", config.library().title(), chosen.display, chosen.view,
+                                 oneLine(error.what())));
+  }
+  title_ = fmt::format("display {}, view {}, exposure {:g}", chosen.display, chosen.view, chosen.exposure);
+}
+
+DisplayTransform::~DisplayTransform() = default;
+DisplayTransform::DisplayTransform(DisplayTransform&&) noexcept = default;
+
+void DisplayTransform::apply(Image<glm::vec3>& picture) const {
+  tbb::parallel_for(0, picture.height(), [&](int y) {
+    glm::vec3* row = picture.row(y);
+    for (int x = 0; x < picture.width(); ++x)
+      for (int c = 0; c < 3; ++c)
+        if (!std::isfinite(row[x][c])) row[x][c] = 0.0f;
+    ocio::PackedImageDesc pixels(row, picture.width(), 1, 3);
+    impl_->processor->apply(pixels);
+    for (int x = 0; x < picture.width(); ++x) row[x] = glm::clamp(row[x], glm::vec3(0.0f), glm::vec3(1.0f));
+  });
+}
+
+void checkDisplay(const ColourConfig& config, const DisplayChoice& choice) {
+  settled(config.library(), choice);
+}
+
+void writePng(const std::string& path, const Image<glm::vec3>& shown) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(3 * shown.size());
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    for (int c = 0; c < 3; ++c) bytes.push_back(static_cast<std::uint8_t>(std::lround(shown[i][c] * 255.0f)));
+  AtomicFile file(path);
+  OIIO::ImageSpec spec(shown.width(), shown.height(), 3, OIIO::TypeDesc::UINT8);
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("png");
+  if (!out || !out->open(file.temporary(), spec) || !out->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
+      !out->close())
+    throw ResourceError(
+        fmt::format("{}: cannot be written: {}", path, out ? out->geterror() : std::string("no writer of PNG")));
+  file.commit();
+}
+
+}  // namespace pellucid
