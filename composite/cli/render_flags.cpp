@@ -37,8 +37,10 @@ void addCommon(CLI::App& verb, RenderFlags& flags, bool allViews) {
 }
 
 void addWays(CLI::App& verb, RenderFlags& flags) {
-  verb.add_option("--tolerance", flags.tolerance,
-                  "Error to live with, guaranteed for every pixel and channel: E times the larger of 1 and the value")
+  verb.add_option(
+          "--tolerance", flags.tolerance,
+          "Error to live with, proved for every pixel and channel of the mean of all passes: E times the larger of "
+          "1 and the exact value, apart from the file's own rounding")
       ->check(CLI::NonNegativeNumber);
   verb.add_option("--systems", flags.systems, "A pass of its own for every input file or named node, sorted coarsely")
       ->check(CLI::IsMember({"off", "file", "node"}))

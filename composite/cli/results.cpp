@@ -34,16 +34,28 @@ std::string clampText(const PublishedClamps& clamps) {
                      clamps.written, clamps.radiance, clamps.diffusion, clamps.refraction);
 }
 
+std::string toleranceLine(double tolerance, const ToleranceCounts& counts) {
+  const double all = static_cast<double>(counts.certified + counts.recomputed);
+  std::string line = fmt::format(
+      "tolerance {}: {:.1f}% of {} samples of pixels certified, {} composited exactly; no error above {:.3f} "
+      "of it",
+      tolerance, all > 0 ? 100.0 * static_cast<double>(counts.certified) / all : 100.0,
+      counts.certified + counts.recomputed, counts.recomputed, counts.bound);
+  if (counts.measured) line += fmt::format(", {:.3f} measured", *counts.measured);
+  return line;
+}
+
 }  // namespace
 
 void reportError(const RunFlags& flags, const Result& result, nlohmann::json& report) {
   if (const auto* within = result.plan.as<PaintWithin>()) {
     const ToleranceCounts& counts = result.counts.tolerance;
-    report["tolerance"] = {
-        {"E", within->tolerance}, {"certified", counts.certified}, {"recomputed", counts.recomputed}};
-    if (!flags.json)
-      fmt::print("tolerance {}: {} pixels certified, {} recomputed exactly\n", within->tolerance, counts.certified,
-                 counts.recomputed);
+    report["tolerance"] = {{"E", within->tolerance},
+                           {"certified", counts.certified},
+                           {"recomputed", counts.recomputed},
+                           {"bound", counts.bound}};
+    if (counts.measured) report["tolerance"]["measured"] = *counts.measured;
+    if (!flags.json) fmt::print("{}\n", toleranceLine(within->tolerance, counts));
   }
   if (!result.error) return;
   const ErrorStatistics& error = *result.error;

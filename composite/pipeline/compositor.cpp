@@ -167,15 +167,18 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& ru
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
   VeilMean mean;
-  for (int i = 0; i < plan.passes; ++i) {
-    const PassSettings sample = samplePass(pass, i, plan.passes);
-    moving.moveTo(sample.sample, i);
-    Veil veil = painter->paint(sample, i);
-    journal.time("average", [&] {
-      if (edges) edges->weigh(i, veil);
-      mean.add(std::move(veil));
-    });
-  }
+  do {
+    mean = VeilMean();
+    for (int i = 0; i < plan.passes; ++i) {
+      const PassSettings sample = samplePass(pass, i, plan.passes);
+      moving.moveTo(sample.sample, i);
+      Veil veil = painter->paint(sample, i);
+      journal.time("average", [&] {
+        if (edges) edges->weigh(i, veil);
+        mean.add(std::move(veil));
+      });
+    }
+  } while (!painter->settled());
   return journal.time("average", [&] {
     Veil veil = mean.finish();
     if (edges) edges->finish(veil);
@@ -198,8 +201,10 @@ Result Compositor::run(const Request& request) {
   if (request.measure) {
     Journal truth = journal_.beside();
     RunCounts unused;
-    const Veil veil = paint(truthOf(run.plan), run.pass, run, truth, unused);
-    result.error = measureError(result.picture.rgba, compose(veil, gbuffer).rgba);
+    const Image<glm::vec4> exact = compose(paint(truthOf(run.plan), run.pass, run, truth, unused), gbuffer).rgba;
+    result.error = measureError(result.picture.rgba, exact);
+    if (const auto* within = run.plan.as<PaintWithin>())
+      result.counts.tolerance.measured = brokenPart(result.picture.rgba, exact, within->tolerance);
     for (const auto& [name, seconds] : truth.stages.seconds()) journal_.stages.add("truth: " + name, seconds);
   }
   result.layers = veilLayers(request.layers, result.veil);

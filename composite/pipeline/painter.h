@@ -26,6 +26,8 @@ class Painter {
   //   sample  with the light, and its place in the pixel
   //   pass    its number
   virtual Veil paint(const PassSettings& sample, int pass) = 0;
+  // After all passes: false where they do not hold together, and are all to be painted again.
+  virtual bool settled() { return true; }
   // Adds to the mean of the passes what only all of them together can tell.
   virtual void finish(Veil& mean) { (void)mean; }
 };

@@ -30,6 +30,7 @@ class ListsPainter : public Painter {
     return context_.journal.time(mixer_->takesLean() ? "lists and sort" : "lists and method",
                                  [&] { return painted(sample, pass); });
   }
+  bool settled() override { return mixer_->settled(); }
   void finish(Veil& mean) override { mixer_->finish(mean); }
 
  private:

@@ -23,6 +23,7 @@ class Mixer {
   // Once all windows of a pass are mixed.
   //   scatter  what looks the background up elsewhere; without planes of scattering where nothing does
   virtual void endPass(const OitPlanes& scatter) { (void)scatter; }
+  virtual bool settled() { return true; }
   virtual void finish(Veil& mean) { (void)mean; }
   virtual VolumeRule rule() const { return VolumeRule::midDepth; }
   virtual bool exactScatter() const { return false; }  // what scatters is summed so that no order shows

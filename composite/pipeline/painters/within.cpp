@@ -4,18 +4,33 @@
 namespace pellucid {
 namespace {
 
+std::size_t accountsOf(const PaintContext& context) {
+  if (context.plan.heldOut) return placesOf(*context.picture.deepOpaque);
+  return context.picture.gbuffer->beauty.size();
+}
+
 class WithinMixer : public Mixer {
  public:
-  WithinMixer(const PaintContext& context, double tolerance) : counts_(context.counts), tolerance_(tolerance) {}
+  WithinMixer(const PaintContext& context, double tolerance)
+      : counts_(context.counts.tolerance), promised_(accountsOf(context), tolerance, context.plan.passes) {}
   void mix(const Mixed& mixed, const FragmentLists& lists, Veil& veil) override {
-    compositeWithin(lists, {0, mixed.sample.weight, mixed.sample.normalisation}, mixed.data, mixed.background,
-                    mixed.scatter, tolerance_, veil, counts_.tolerance);
+    const MethodChoice choice{0, mixed.sample.weight, mixed.sample.normalisation};
+    compositeWithin(
+        {lists, choice, mixed.data, mixed.background, mixed.scatter, mixed.row ? &mixed.row->place : nullptr},
+        promised_, veil, counts_);
+  }
+  bool settled() override {
+    const bool holds = promised_.settle();
+    if (!holds) counts_ = {};
+    counts_.bound = promised_.largestBound();
+    return holds;
   }
   VolumeRule rule() const override { return VolumeRule::split; }
+  bool exactScatter() const override { return true; }  // lookups are those of the truth, to the bit
 
  private:
-  RunCounts& counts_;
-  double tolerance_;
+  ToleranceCounts& counts_;
+  PromisedError promised_;  // of all passes
 };
 
 }  // namespace
