@@ -134,7 +134,8 @@ class WithinPass {
         certain += sample.hasSolid() ? 1 : 0;
         continue;
       }
-      const Estimate estimate = estimateOf(layers, input_.choice, sample, promised_.rounding());
+      Estimate estimate = estimateOf(layers, input_.choice, sample, promised_.rounding());
+      if (input_.weight) estimate.bound *= static_cast<double>(input_.weight->at(left_ + x, top_ + y));
       if (!promised_.allows(accountOf(x, y), estimate.bound, estimate.least)) {
         uncertain_[entryOf(x, y)] = 1;
         ++others;

@@ -68,6 +68,7 @@ struct WithinInput {
   const Window& data;                                // of the veil; the lists' window lies inside
   const Image<glm::vec4>* background = nullptr;      // of `data`; null: not known, so that nothing is relative to it
   const OitPlanes* scatter = nullptr;                // which pixels look the background up elsewhere, or null
+  const Image<float>* weight = nullptr;              // of the pass in each pixel's mean, of `data`; null: 1
   const std::vector<std::size_t>* places = nullptr;  // the account of each entry; null: pixels of `data`, row by row
 };
 // Writes the veil of the lists' window; transmission is exact.

@@ -12,12 +12,14 @@ std::size_t accountsOf(const PaintContext& context) {
 class WithinMixer : public Mixer {
  public:
   WithinMixer(const PaintContext& context, double tolerance)
-      : counts_(context.counts.tolerance), promised_(accountsOf(context), tolerance, context.plan.passes) {}
+      : picture_(context.picture),
+        counts_(context.counts.tolerance),
+        promised_(accountsOf(context), tolerance, context.plan.passes) {}
   void mix(const Mixed& mixed, const FragmentLists& lists, Veil& veil) override {
     const MethodChoice choice{0, mixed.sample.weight, mixed.sample.normalisation};
-    compositeWithin(
-        {lists, choice, mixed.data, mixed.background, mixed.scatter, mixed.row ? &mixed.row->place : nullptr},
-        promised_, veil, counts_);
+    compositeWithin({lists, choice, mixed.data, mixed.background, mixed.scatter, picture_.passWeight,
+                     mixed.row ? &mixed.row->place : nullptr},
+                    promised_, veil, counts_);
   }
   bool settled() override {
     const bool holds = promised_.settle();
@@ -29,6 +31,7 @@ class WithinMixer : public Mixer {
   bool exactScatter() const override { return true; }  // lookups are those of the truth, to the bit
 
  private:
+  const LitPicture& picture_;  // of the pass that is mixed
   ToleranceCounts& counts_;
   PromisedError promised_;  // of all passes
 };
