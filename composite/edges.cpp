@@ -15,9 +15,9 @@ namespace {
 constexpr double kApart = 1.0 / 256.0;
 constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
 // Surfaces whose colours differ by less, relative to the brighter, do not tell their shares.
-constexpr double kContrast = 1.0 / 32.0;
+constexpr double kContrast = 1.0 / 16.0;
 // How far a mixture may lie from the line between the two colours, as a part of its length.
-constexpr double kOffLine = 0.5;
+constexpr double kOffLine = 0.25;
 constexpr double kBetter = 0.8;         // continued colours must lie so much nearer to the line
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
 
