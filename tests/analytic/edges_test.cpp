@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "composite/antialias.h"
 #include "composite/edges.h"
+#include "composite/methods/stochastic.h"
 #include "composite/resolve.h"
 
 namespace pellucid {
@@ -125,6 +127,56 @@ TEST(Edges, ALayerIsCompositedOverEitherSide) {
             }
           }
       }
+}
+
+// Samples are filtered over all passes before they are divided, so their means take the passes' weights too.
+TEST(Edges, StochasticSamplesTakeThePassesWeights) {
+  constexpr int kPasses = 8;
+  const glm::vec3 light(0.5f, 1.0f, 2.0f);
+  const Scene& scene = kScenes[1];
+  const GBuffer gbuffer = scene.picture();
+  const DepthPlanes planes(gbuffer, Camera());
+  std::vector<glm::dvec2> samples;
+  for (int i = 0; i < kPasses; ++i) samples.push_back(samplePosition(i, kPasses));
+  const EdgePasses edges(edgePixels(gbuffer, planes), samples);
+  StochasticSettings settings;
+  StochasticMean stochastic(kSize, kSize, settings, kPasses);
+  VeilMean mean;
+  Image<float> there = gbuffer.viewZ, weights(kSize, kSize, 1.0f);
+  for (int i = 0; i < kPasses; ++i) {
+    planes.depthAt(samples[static_cast<std::size_t>(i)], there);
+    edges.depthAt(i, there);
+    edges.weightAt(i, weights);
+    FragmentLists lists;
+    lists.window = gbuffer.data;
+    lists.solid = Image<glm::vec4>(kSize, kSize, glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity()));
+    lists.offsets.assign(1, 0);
+    for (std::size_t k = 0; k < there.size(); ++k) {
+      Fragment glass{};
+      glass.radiance = 0.7f * light;
+      glass.coverage = 0.7f;
+      glass.z = 5.0f;
+      glass.identity = static_cast<std::uint32_t>(k);
+      if (glass.z <= there[k]) lists.fragments.push_back(glass);
+      lists.offsets.push_back(lists.fragments.size());
+    }
+    Veil veil(kSize, kSize);
+    stochastic.add(i, lists, gbuffer.data, veil, &weights);
+    edges.weigh(i, veil);
+    mean.add(std::move(veil));
+  }
+  Veil veil = mean.finish();
+  edges.finish(veil);
+  stochastic.finish(veil);
+  const Picture picture = compose(veil, gbuffer);
+  for (int y = 1; y < kSize - 1; ++y)
+    for (int x = 1; x < kSize - 1; ++x) {
+      const double f = scene.share(x, y);
+      for (int c = 0; c < 3; ++c) {
+        const double behind = 0.7 * static_cast<double>(light[c]) + 0.3 * kBack[c];
+        EXPECT_NEAR(static_cast<double>(picture.rgba.at(x, y)[c]), f * kFront[c] + (1.0 - f) * behind, 2e-5);
+      }
+    }
 }
 
 // What is not filtered has nothing to take apart, and neither has a colour that is no mixture of its neighbours'.
