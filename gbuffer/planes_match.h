@@ -27,8 +27,9 @@ void expectSpaceOf(const ColourSpace& picture, const std::string& pictureFile, c
 // mergePlanes (accum.h) with the names of the files in its error.
 void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, const std::string& fileB);
 
-// Planes belong over pictures of their display window (those of places: see OitInfo::places), data window and, where the picture's file states one, camera. A
-// camera that was given by --camera when the planes were made overrules the file's then and here.
+// Planes belong over pictures of their display window (those of places: see OitInfo::places), data window and, where
+// the picture's file states one, camera. A camera that was given by --camera when the planes were made overrules the
+// file's then and here.
 void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,
                     const std::string& file);
 

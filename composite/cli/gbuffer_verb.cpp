@@ -1,113 +1,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "composite/cli/colour_flags.h"
-#include "composite/cli/preview_flags.h"
+#include "composite/cli/gbuffer_render.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/shot.h"
-#include "engine_bridge/embree/opaque_render.h"
-#include "engine_bridge/gl/opaque_pass.h"
 #include "engine_bridge/scene/working_space.h"
-#include "gbuffer/errors.h"
 
 namespace pellucid::cli {
 namespace {
 
-constexpr int kLongestEdge = 65536;
 constexpr int kMostSamples = 65536;
-
-struct GbufferFlags {
-  std::vector<std::string> scenes;
-  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter, assetRoot;
-  std::optional<int> samples;
-  std::optional<double> aoRadius;
-  std::vector<std::string> overrides;
-  double unit = 1.0, lumensPerWatt = 683.0;
-  int device = -1;
-  ColourFlags colour;
-  PreviewFlags preview;
-  RunFlags run;
-};
-
-// "1920x1080"
-Window parseSize(const std::string& text) {
-  int width = 0, height = 0;
-  const char* end = text.data() + text.size();
-  const auto [cross, first] = std::from_chars(text.data(), end, width);
-  if (first == std::errc() && cross != end && *cross == 'x') {
-    const auto [rest, second] = std::from_chars(cross + 1, end, height);
-    if (second == std::errc() && rest == end && width > 0 && height > 0 && width <= kLongestEdge &&
-        height <= kLongestEdge)
-      return {0, 0, width, height};
-  }
-  throw UsageError(fmt::format("--size: found '{}', expected WIDTHxHEIGHT, each from 1 to {}", text, kLongestEdge));
-}
-
-// Says how far a long render is, not more often than one can read.
-class Progress {
- public:
-  void operator()(double done) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::seconds(5) || done >= 1.0) return;
-    last_ = now;
-    note("gbuffer: {:.0f}% of the picture", 100.0 * done);
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   const ColourSpace& space, Stages& stages) {
-  if (flags.textureFilter == "mipmap")
-    throw UsageError(
-        "--texture-filter: found mipmap, expected bilinear or nearest with --renderer embree: its samples filter");
-  if (flags.textureFilter == "nearest")
-    throw UsageError("--texture-filter: found nearest, expected bilinear with --renderer embree");
-  if (flags.device >= 0) throw UsageError("--device: expected --renderer gl: Embree runs on the CPU");
-  Environment environment;
-  std::vector<std::string> notes;
-  if (isColour(flags.environment))
-    environment = Environment(parseColour(flags.environment, "--environment"));
-  else if (!flags.environment.empty())
-    environment =
-        stages.time("read environment", [&] { return readEnvironment(flags.environment, notes, space.fromRec709); });
-  say(notes);
-  OpaqueRenderSettings settings;
-  settings.samples = flags.samples.value_or(settings.samples);
-  settings.shadows = flags.shadows != "off";
-  settings.aoRadius = static_cast<float>(flags.aoRadius.value_or(static_cast<double>(settings.aoRadius)));
-  settings.progress = [progress = std::make_shared<Progress>()](double done) { (*progress)(done); };
-  return stages.time("trace", [&] { return renderOpaque(scene, camera, window, window, environment, settings); });
-}
-
-OpaquePlanes rasterise(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                       Stages& stages, std::string& device) {
-  if (flags.samples.value_or(1) != 1)
-    throw UsageError(
-        fmt::format("--samples: found {}, expected 1 with --renderer gl: it samples pixel centres", *flags.samples));
-  if (flags.shadows == "exact")
-    throw UsageError("--shadows: found exact, expected off with --renderer gl: it traces no rays");
-  if (flags.aoRadius.value_or(0.0) > 0.0)
-    throw UsageError("--ao-radius: expected --renderer embree: gl traces no rays");
-  OpaquePassSettings settings;
-  settings.filter = flags.textureFilter == "bilinear"  ? TextureFilter::bilinear
-                    : flags.textureFilter == "nearest" ? TextureFilter::nearest
-                                                       : TextureFilter::mipmap;
-  if (isColour(flags.environment))
-    settings.surroundings = parseColour(flags.environment, "--environment");
-  else if (!flags.environment.empty())
-    throw UsageError(fmt::format("--environment: found '{}', expected R,G,B with --renderer gl", flags.environment));
-  GlContext context(flags.device);
-  device = context.description();
-  return stages.time("rasterise", [&] { return rasteriseOpaque(context, scene, camera, window, window, settings); });
-}
 
 // There is no picture yet to say it: linear Rec.709, unless --working-space names another.
 ColourSpace spaceToRender(const GbufferFlags& flags) {

@@ -7,21 +7,6 @@
 namespace pellucid::cli {
 namespace {
 
-struct NamedLayer {
-  const char* text;
-  LayerName name;
-};
-constexpr NamedLayer kLayers[] = {
-    {"transparent", LayerName::transparent},
-    {"transmission", LayerName::transmission},
-    {"depth", LayerName::depth},
-    {"edges", LayerName::edges},
-    {"D", LayerName::diffusion},
-    {"delta", LayerName::delta},
-    {"weight", LayerName::weight},
-    {"count", LayerName::count},
-};
-
 void addCommon(CLI::App& verb, RenderFlags& flags, bool allViews) {
   verb.add_option("opaque", flags.opaque, "EXR with beauty and depth")->required();
   verb.add_option("scenes", flags.inputs, "glTF, GLB or deep EXR with the transparent things")->required();
@@ -49,23 +34,6 @@ void addWays(CLI::App& verb, RenderFlags& flags) {
 }
 
 }  // namespace
-
-std::vector<LayerName> layerNames(const std::vector<std::string>& layers) {
-  std::vector<LayerName> names;
-  for (const std::string& text : layers)
-    for (const NamedLayer& layer : kLayers)
-      if (text == layer.text) names.push_back(layer.name);
-  return names;
-}
-
-void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
-  std::vector<std::string> names;
-  for (const NamedLayer& layer : kLayers) names.emplace_back(layer.text);
-  verb.add_option("--layers", layers,
-                  "Layers to add: transparent, transmission, depth; for debugging edges, D, delta, weight, count")
-      ->delimiter(',')
-      ->check(CLI::IsMember(names));
-}
 
 void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
   addCommon(verb, *this, what.allViews);

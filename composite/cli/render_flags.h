@@ -6,6 +6,7 @@
 
 #include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
+#include "composite/cli/layer_flag.h"
 #include "composite/cli/method_flags.h"
 #include "composite/cli/options.h"
 #include "composite/cli/scatter_flags.h"
@@ -55,8 +56,5 @@ struct RenderFlags {
   void paintInto(Request& request) const;
   const CLI::Option *lowResolutionOption_ = nullptr, *edgesOption_ = nullptr;
 };
-
-std::vector<LayerName> layerNames(const std::vector<std::string>& layers);
-void addLayersOption(CLI::App& verb, std::vector<std::string>& layers);
 
 }  // namespace pellucid::cli

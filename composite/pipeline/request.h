@@ -136,7 +136,8 @@ struct LowResolutionRequest {
 // Extra layers of the output.
 enum class LayerName { transparent, transmission, depth, edges, diffusion, delta, weight, count };
 
-// Pixels whose colour is filtered over an edge of the opaque picture: taken apart into its two surfaces, or left as one.
+// Pixels whose colour is filtered over an edge of the opaque picture: taken apart into its two surfaces, or left as
+// one.
 enum class EdgeRule { resolve, off };
 
 struct Request {
@@ -146,7 +147,7 @@ struct Request {
   std::optional<MethodDecision> decided;  // where nobody asked for a method: why it is this one
   Tier tier = Tier::float32;
   SumsRequest sums;
-  int passes = 1;  // jittered, averaged
+  int passes = 1;                 // jittered, averaged
   std::optional<EdgeRule> edges;  // else resolve, where several passes can be dealt to two surfaces
   TextureFilter filter = TextureFilter::mipmap;
   MaskEdge mask = MaskEdge::smooth;

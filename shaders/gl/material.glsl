@@ -102,6 +102,14 @@ vec3 normalHere(vec3 toEye) {
 #endif
 }
 
+bool isUnlit() {
+#ifdef UNLIT
+  return true;
+#else
+  return false;
+#endif
+}
+
 // Takes derivatives: to be called before any discard.
 Surface surfaceHere() {
   MaterialPoint point;
@@ -154,13 +162,8 @@ Surface surfaceHere() {
   // What enters on a front face leaves through a back face: counted once.
   if (gl_FrontFacing) attenuation = attenuationOf(material.volume.rgb, ratio);
 #endif
-#ifdef UNLIT
-  bool unlit = true;
-#else
-  bool unlit = false;
-#endif
 #ifndef MASK_LEVELLED
   float covered = coverageOf(point.base.a);
 #endif
-  return surfaceOf(point, covered, attenuation, unlit);
+  return surfaceOf(point, covered, attenuation, isUnlit());
 }

@@ -91,8 +91,7 @@ void main() {
   vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
   vec3 normal = normalHere(toEye);
   cosEye = clamp(dot(normal, toEye), PLD_GRAZING, 1.0f);
-  vec3 direct = vec3(0.0f);
-  vec3 indirect = vec3(0.0f);
+  vec3 direct = vec3(0.0f), indirect = vec3(0.0f);
 #ifdef SURROUNDINGS
   indirect = reflectSurroundings(surface, cosEye) * surroundings.rgb;
 #endif

@@ -65,7 +65,7 @@ TEST_F(SideFiles, DepthByItsNameOrBecauseThereIsNoOther) {
       {{"Y", 7}},
       {{"R", 7}, {"G", 7}, {"B", 7}},
       {{"A", 1}, {"R", 7}, {"G", 7}, {"B", 7}},
-      {{"rgba.R", 3}, {"VRayZDepth.R", 7}},
+      {{"rgba.R", 3}, {"depth.Z", 7}},  // of V-Ray's name one would have to say what it measures
   };
   for (const auto& layout : layouts) {
     const OpaqueFile file = read(write("depth.exr", layout));

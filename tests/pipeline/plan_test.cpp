@@ -87,7 +87,7 @@ TEST(Plan, MarksDecideTheLowResolution) {
 }
 
 TEST(Plan, WhatTheDeviceCannotSampleIsSaid) {
-  Request request;
+  Request request = test::requestOf("", "");
   PaintSamples samples;
   samples.onDevice = true;
   request.paint = samples;

@@ -1,0 +1,76 @@
+#include "composite/cli/camera_flag.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "composite/cli/parse.h"
+#include "gbuffer/errors.h"
+
+namespace pellucid::cli {
+namespace {
+
+glm::dvec3 parsePoint(const std::string& text) {
+  const auto numbers = parseNumbers(text, ',', 3, "--camera", "three numbers X,Y,Z");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+}  // namespace
+
+CameraChoice cameraChoice(const std::string& text) {
+  if (text.empty()) return std::monostate();
+  if (text.find('=') == std::string::npos) return NamedCamera{text};
+  PlacedCamera camera;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ';');) {
+    const auto equals = part.find('=');
+    const std::string key = part.substr(0, equals);
+    const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
+    if (key == "eye")
+      camera.eye = parsePoint(value);
+    else if (key == "look")
+      camera.look = parsePoint(value);
+    else if (key == "up")
+      camera.up = parsePoint(value);
+    else if (key == "fov")
+      camera.fov = parseNumbers(value, ',', 1, "--camera", "fov=DEGREES")[0];
+    else
+      throw UsageError(fmt::format("--camera: found '{}', expected eye=, look=, up= or fov=", part));
+  }
+  if (!(camera.fov > 0 && camera.fov < 180))
+    throw UsageError(fmt::format("--camera: found fov={}, expected degrees between 0 and 180", camera.fov));
+  if (glm::length(glm::cross(camera.look - camera.eye, camera.up)) < 1e-12)
+    throw UsageError("--camera: the view direction and up are parallel, expected two directions");
+  return camera;
+}
+
+CameraChoice cameraOfView(const std::vector<std::string>& cameras, const std::string& view,
+                          const std::vector<std::string>& views) {
+  std::string general, own;
+  for (const std::string& text : cameras) {
+    const std::string key = text.substr(0, text.find('='));
+    const bool placed = key == "eye" || key == "look" || key == "up" || key == "fov";
+    const bool ofView = key.size() < text.size() && !placed;
+    if (ofView && std::find(views.begin(), views.end(), key) == views.end())
+      throw UsageError(
+          fmt::format("--camera: found '{}', expected a glTF camera, eye=, look=, up= or fov=, or a view "
+                      "that --view names before the equals sign",
+                      text));
+    if (ofView && key != view) continue;
+    std::string& choice = ofView ? own : general;
+    if (!choice.empty())
+      throw UsageError(
+          fmt::format("--camera: found '{}' and '{}', expected one, or VIEW=CAMERA for each view", choice, text));
+    choice = ofView ? text.substr(key.size() + 1) : text;
+  }
+  return cameraChoice(own.empty() ? general : own);
+}
+
+SurroundingsChoice surroundingsChoice(const std::string& text) {
+  if (text.empty()) return std::monostate();
+  if (isColour(text)) return parseColour(text, "--environment");
+  return PictureOfSurroundings{text};
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,17 @@
+// What --camera and --environment say.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "composite/pipeline/request.h"
+
+namespace pellucid::cli {
+
+// The camera of a view, by its own entry or by the one for all. Throws UsageError for two, and for an entry of a view
+// that is none of `views`.
+CameraChoice cameraOfView(const std::vector<std::string>& cameras, const std::string& view,
+                          const std::vector<std::string>& views);
+CameraChoice cameraChoice(const std::string& text);              // "", a name or eye=...;look=...; throws UsageError
+SurroundingsChoice surroundingsChoice(const std::string& text);  // "", R,G,B or a file; throws UsageError
+
+}  // namespace pellucid::cli
