@@ -80,8 +80,8 @@ TEST(FogLight, IsBeerAndLambertFromInsideAndFromBeyond) {
     dimmed += depth > 0.01 ? 1 : 0;
   }
   std::printf("[ figure ] %d of 4000 ways dimmed, worst %.2g\n", dimmed, worst);
-  EXPECT_GT(dimmed, 1500);
-  EXPECT_LE(worst, 2e-5);  // a box's walls are known to float, and so is the length between them
+  EXPECT_GT(dimmed, 1000);  // the others pass beside their box
+  EXPECT_LE(worst, 2e-5);   // a box's walls are known to float, and so is the length between them
 }
 
 // A sun above layered fog meets all of it that lies above the point; a sun over even fog without an end none.
@@ -218,11 +218,13 @@ TEST_F(FogAndLamps, ABoxBesideTheEyesWayDimsTheLampAlone) {
   writeScene({{-9, -9, -5}, {18, 0, 0}, {0, 18, 0}, paper(0.8, 0.5)}, M_PI / 4, 3.0);  // light towards (1, 0, -1)
   const double clear = 0.5 * 0.8 / M_PI * 3.0 * std::sqrt(0.5);
   const std::string fog = "density=0.6,albedo=0,box=-2:-2:-4:-1:2:-3";
+  // What the pixel shows lies half a pixel from the axis, from where the way cuts a corner of the box.
+  const double way = std::sqrt(2.0) * (1.0 - metres(kSize / 2, 5.0));
   for (const char* method : {"over", "phenomenological"})
     for (const auto& [shadows, tolerance] : {std::pair("exact", 1e-3), std::pair("stochastic", 0.02)}) {
       const float dimmed =
           composite({"--aa", "1", "--method", method, "--shadows", shadows, "--fog", fog}).at(32, 32).r;
-      EXPECT_NEAR(static_cast<double>(dimmed) / clear, std::exp(-0.6 * std::sqrt(2.0)), tolerance) << method << shadows;
+      EXPECT_NEAR(static_cast<double>(dimmed) / clear, std::exp(-0.6 * way), tolerance) << method << shadows;
     }
 }
 
