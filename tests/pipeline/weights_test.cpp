@@ -133,6 +133,7 @@ TEST_F(Weights, AutoIsAsGoodAsTheBestListedAtEveryScale) {
        [](Request& r, float scale) {
          r.fog.text = FogText();
          r.fog.text->medium.density = 0.1 / static_cast<double>(scale);
+         r.fog.text->medium.farthest = 1000.0 * static_cast<double>(scale);
          r.fog.text->hasDensity = true;
        }},
       {"fog in lists",
@@ -141,6 +142,7 @@ TEST_F(Weights, AutoIsAsGoodAsTheBestListedAtEveryScale) {
          r.paint = paintOf(r.method);
          r.fog.text = FogText();
          r.fog.text->medium.density = 0.3 / static_cast<double>(scale);
+         r.fog.text->medium.farthest = 1000.0 * static_cast<double>(scale);
          r.fog.text->hasDensity = true;
        }},
       {"low resolution",
