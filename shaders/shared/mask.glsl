@@ -31,9 +31,6 @@ PLD_FN float rimLeft(float texels) {
 const float PLD_MASK_FULL = 0.99999f;        // a mean of nothing but 1 may come out this far below it
 const float PLD_MASK_SPREAD = 0.577f;        // texel over pixel at which a bilinear read spreads as the pixel does
 const float PLD_MASK_REACH = 1.41421356f;    // of one of several passes, over its own edge
-// The same for what such a pass reaches. With less, a pattern as wide as a pixel beats with eight passes; with more,
-// leaves blur.
-const float PLD_MASK_SPREAD_OF_MANY = 0.78f;
 
 // Edge of what a sample of a levelled mask stands for, pixels. Those of several passes lie irregularly: each reaches
 // into the gaps beside it, or a pattern that repeats with the pixels would be met at the same few places everywhere.
@@ -45,7 +42,7 @@ PLD_FN float maskEdge(float footprint) {
 // Mip level that holds what the cut leaves of a mask under a sample. Level 0 holds alpha itself.
 //   texels  texelsAcross its maskEdge
 PLD_FN float keptLevel(float texels, float footprint) {
-  float spread = footprint < 1.0f ? PLD_MASK_SPREAD_OF_MANY : PLD_MASK_SPREAD;
+  float spread = footprint < 1.0f ? 1.0f : PLD_MASK_SPREAD;
   return log2(max(spread * texels, 2.0f));
 }
 
