@@ -49,9 +49,7 @@ void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--texture-filter", textureFilter, "How textures are read where a texel is not a pixel")
       ->check(CLI::IsMember({"mipmap", "bilinear", "nearest"}))
       ->capture_default_str();
-  verb.add_option("--mask", mask,
-                  "Of alpha-tested materials; smooth: rims are partly covered, and patterns finer than a sample show "
-                  "their mean; hard: tested at the sample alone")
+  verb.add_option("--mask", mask, "Edges of alpha-tested materials")
       ->check(CLI::IsMember({"smooth", "hard"}))
       ->capture_default_str();
   verb.add_option("--order", order, "Submission order: file, reverse or shuffle:SEED")->capture_default_str();

@@ -101,14 +101,15 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
   }
 }
 
+// A ramp of alpha keeps its cut by averaging; scaled to some area of the whole texture, it would move.
 float SceneTextures::keptCut(const Material& material) {
   const int index = material.baseColorTexture.texture;
   const float cut = index < 0 ? 0.0f : cutOfBase(material);
   if (!(cut > 0.0f)) return 0.0f;
-  auto known = ranges_.find(index);
-  if (known == ranges_.end())
-    known = ranges_.emplace(index, rangeOf(scene_.textures.at(static_cast<std::size_t>(index)).texels)).first;
-  return known->second.least.a < cut && known->second.most.a >= cut ? cut : 0.0f;
+  auto known = masks_.find(index);
+  if (known == masks_.end())
+    known = masks_.emplace(index, measureMask(scene_.textures.at(static_cast<std::size_t>(index)).texels).binary).first;
+  return known->second ? cut : 0.0f;
 }
 
 bool SceneTextures::weighs(const Material& material) {
@@ -128,11 +129,9 @@ std::vector<std::string> SceneTextures::defines(const Material& material, Textur
   std::vector<std::string> defines;
   if (weighs(material)) defines.emplace_back("BASE_WEIGHTED");
   const int base = material.baseColorTexture.texture;
-  if (material.alphaMode != AlphaMode::mask || base < 0) return defines;
-  if (filter != TextureFilter::mipmap || !hasLevels(scene_.textures[static_cast<std::size_t>(base)].minify))
+  if (material.alphaMode == AlphaMode::mask && base >= 0 &&
+      (filter != TextureFilter::mipmap || !hasLevels(scene_.textures[static_cast<std::size_t>(base)].minify)))
     defines.emplace_back("MASK_UNLEVELLED");
-  else if (keptCut(material) > 0.0f)
-    defines.emplace_back("MASK_LEVELLED");
   return defines;
 }
 
@@ -160,15 +159,14 @@ const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, Textu
   return sampler;
 }
 
-// Those of a mask hold what its cut leaves; other textures are averaged.
+// What a mask covers stays the same at every level; other textures are averaged.
 void SceneTextures::makeMipmaps(const Key& key, Uploaded& uploaded) {
   uploaded.mipmaps = true;
   if (key.cut <= 0.0f) {
     glGenerateTextureMipmap(uploaded.texture.name());
     return;
   }
-  const pellucid::Texture& texture = scene_.textures[static_cast<std::size_t>(key.texture)];
-  const auto levels = keptLevels(texture.texels, key.cut, texture);
+  const auto levels = coveragePreservingMips(scene_.textures[static_cast<std::size_t>(key.texture)].texels, key.cut);
   for (std::size_t level = 1; level < levels.size(); ++level)
     uploadLevel(uploaded.texture, static_cast<GLint>(level), key.weighted ? weighted(levels[level]) : levels[level]);
   checkGl("uploading the mip levels of a mask");
@@ -184,8 +182,7 @@ void SceneTextures::bind(const Material& material, TextureFilter filter, float f
     const pellucid::Texture& texture = scene_.textures[static_cast<std::size_t>(index)];
     if (filter == TextureFilter::mipmap && hasLevels(texture.minify) && !uploaded.mipmaps) makeMipmaps(key, uploaded);
     glBindTextureUnit(kUnits[i], uploaded.texture.name());
-    // The text chooses the levels of a cut-out itself, for the footprint too.
-    glBindSampler(kUnits[i], samplerFor(texture, filter, key.cut > 0.0f ? 1.0f : footprint).name());
+    glBindSampler(kUnits[i], samplerFor(texture, filter, footprint).name());
   }
 }
 

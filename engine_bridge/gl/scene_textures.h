@@ -38,18 +38,19 @@ class SceneTextures {
   };
   struct Key {
     int texture;
-    float cut;      // of which its levels hold what it leaves; 0 for none
+    float cut;      // whose covered area its levels keep; 0 for none
     bool weighted;  // colours are times alpha
     auto operator<=>(const Key&) const = default;
   };
   bool weighs(const Material& material);  // its base colour is stored times its alpha
   Key keyOf(const Material& material, std::size_t slot);
-  // That cut for the base colour of a material that is cut out of it somewhere; 0 for others.
+  // That cut for the base colour of a material that is cut out of a mask; 0 for others.
   float keptCut(const Material& material);
   void makeMipmaps(const Key& key, Uploaded& uploaded);
 
   const Scene& scene_;
   std::map<Key, Uploaded> uploaded_;
+  std::map<int, bool> masks_;                    // by texture: whether its finest level is binary
   std::map<std::pair<int, bool>, bool> weighs_;  // by texture, and whether every alpha passes
   std::map<int, TexelRange> ranges_;
   std::map<std::pair<Sampling, float>, Sampler> samplers_;  // and by footprint

@@ -22,103 +22,44 @@ Image<std::uint8_t> spread(const Image<std::uint8_t>& kinds, int dx, int dy) {
   return out;
 }
 
-// Where a texel of a coarser level lies among those of the finer one: its first, and the share of each that it takes.
+// The rows or columns of a finer level under one of a coarser level; the last one takes what is left over.
 struct Span {
-  int first = 0;
-  std::vector<double> shares;  // sum to 1
+  int first, last;
 };
-
-std::vector<Span> spans(int coarse, int fine) {
-  std::vector<Span> all(static_cast<std::size_t>(coarse));
-  const double edge = static_cast<double>(fine) / coarse;
-  for (int i = 0; i < coarse; ++i) {
-    Span& span = all[static_cast<std::size_t>(i)];
-    const double begin = i * edge, end = i + 1 == coarse ? fine : (i + 1) * edge;
-    span.first = static_cast<int>(begin);
-    for (int k = span.first; k < end; ++k)
-      span.shares.push_back((std::min(end, k + 1.0) - std::max(begin, static_cast<double>(k))) / (end - begin));
-  }
-  return all;
+Span under(int i, int coarse, int fine) {
+  if (fine == 1) return {0, 0};
+  return {2 * i, i + 1 == coarse ? fine - 1 : 2 * i + 1};
 }
 
-// Colours averaged by what is left of them, unless nothing is.
 Image<glm::vec4> halved(const Image<glm::vec4>& fine) {
   Image<glm::vec4> coarse(std::max(fine.width() / 2, 1), std::max(fine.height() / 2, 1));
-  const std::vector<Span> columns = spans(coarse.width(), fine.width()), rows = spans(coarse.height(), fine.height());
   for (int y = 0; y < coarse.height(); ++y)
     for (int x = 0; x < coarse.width(); ++x) {
-      const Span &row = rows[static_cast<std::size_t>(y)], &column = columns[static_cast<std::size_t>(x)];
-      glm::dvec3 left(0.0), plain(0.0);
-      double kept = 0.0;
-      for (std::size_t v = 0; v < row.shares.size(); ++v)
-        for (std::size_t u = 0; u < column.shares.size(); ++u) {
-          const glm::dvec4 texel(fine.at(column.first + static_cast<int>(u), row.first + static_cast<int>(v)));
-          const double share = row.shares[v] * column.shares[u];
-          left += share * texel.a * glm::dvec3(texel);
-          plain += share * glm::dvec3(texel);
-          kept += share * texel.a;
+      const Span rows = under(y, coarse.height(), fine.height()), columns = under(x, coarse.width(), fine.width());
+      glm::dvec3 covered(0.0), plain(0.0);
+      double alpha = 0.0, count = 0.0;
+      for (int v = rows.first; v <= rows.last; ++v)
+        for (int u = columns.first; u <= columns.last; ++u) {
+          const glm::dvec4 texel(fine.at(u, v));
+          covered += glm::dvec3(texel) * texel.a;
+          plain += glm::dvec3(texel);
+          alpha += texel.a;
+          count += 1.0;
         }
-      coarse.at(x, y) = glm::vec4(glm::dvec4(kept > 0.0 ? left / kept : plain, kept));
+      // What is cut away has no colour to give, unless there is nothing else.
+      const glm::dvec3 colour = alpha > 0.0 ? covered / alpha : plain / count;
+      coarse.at(x, y) = glm::vec4(glm::dvec4(colour, alpha / count));
     }
   return coarse;
 }
 
-constexpr int kTests = 4;  // of the cut along a texel's edge
+constexpr int kLines = 4;  // across a patch that the cut crosses
 
-// Alpha of the texels around one, row by row.
-struct Around {
-  float alpha[3][3];
-  float at(float u, float v) const {  // between -1/2 and 1/2 from the middle one's centre
-    const int x = u < 0.0f ? 0 : 1, y = v < 0.0f ? 0 : 1;
-    const float fx = u < 0.0f ? u + 1.0f : u, fy = v < 0.0f ? v + 1.0f : v;
-    const float upper = alpha[y][x] + fx * (alpha[y][x + 1] - alpha[y][x]);
-    const float lower = alpha[y + 1][x] + fx * (alpha[y + 1][x + 1] - alpha[y + 1][x]);
-    return upper + fy * (lower - upper);
-  }
-};
-
-int across(int i, int size, Wrap wrap) {
-  if (wrap == Wrap::repeat) return wrapped(i, size);
-  return std::clamp(i, 0, size - 1);  // a mirror shows the last texel once more
-}
-
-// Part of a texel's area that the cut leaves of the filtered alpha.
-float keptOf(const Around& around, float cutoff) {
-  float least = around.alpha[0][0], most = least;
-  for (const auto& row : around.alpha)
-    for (const float alpha : row) {
-      least = std::min(least, alpha);
-      most = std::max(most, alpha);
-    }
-  if (least >= cutoff) return 1.0f;
-  if (most < cutoff) return 0.0f;
-  int kept = 0;
-  for (int j = 0; j < kTests; ++j)
-    for (int i = 0; i < kTests; ++i)
-      kept += around.at((static_cast<float>(i) + 0.5f) / kTests - 0.5f,
-                        (static_cast<float>(j) + 0.5f) / kTests - 0.5f) >= cutoff;
-  return static_cast<float>(kept) / (kTests * kTests);
-}
-
-// The texture with what the cut leaves of each texel for its alpha.
-Image<glm::vec4> keptTexels(const Image<glm::vec4>& texels, float cutoff, const Sampling& sampling) {
-  Image<glm::vec4> kept = texels;
-  for (int y = 0; y < texels.height(); ++y)
-    for (int x = 0; x < texels.width(); ++x) {
-      if (sampling.nearest) {
-        kept.at(x, y).a = texels.at(x, y).a >= cutoff ? 1.0f : 0.0f;
-        continue;
-      }
-      Around around;
-      for (int v = 0; v < 3; ++v)
-        for (int u = 0; u < 3; ++u)
-          around.alpha[v][u] = texels
-                                   .at(across(x + u - 1, texels.width(), sampling.wrapS),
-                                       across(y + v - 1, texels.height(), sampling.wrapT))
-                                   .a;
-      kept.at(x, y).a = keptOf(around, cutoff);
-    }
-  return kept;
+// Part of a line from value a to value b that reaches the cutoff.
+float reached(float a, float b, float cutoff) {
+  if (std::min(a, b) >= cutoff) return 1.0f;
+  if (std::max(a, b) < cutoff) return 0.0f;
+  return (std::max(a, b) - cutoff) / std::abs(a - b);
 }
 
 }  // namespace
@@ -159,12 +100,55 @@ bool infersOcclusion(const Material& material, const Scene& scene) {
   return measureMask(scene.textures.at(static_cast<std::size_t>(texture)).texels).binary;
 }
 
-std::vector<Image<glm::vec4>> keptLevels(const Image<glm::vec4>& texels, float cutoff, const Sampling& sampling) {
+double coveredArea(const Image<glm::vec4>& level, float cutoff, float scale) {
+  const auto alpha = [&](int x, int y) {
+    return std::min(level.at(std::clamp(x, 0, level.width() - 1), std::clamp(y, 0, level.height() - 1)).a * scale,
+                    1.0f);
+  };
+  double covered = 0.0;
+  for (int y = -1; y < level.height(); ++y)
+    for (int x = -1; x < level.width(); ++x) {
+      // Of the outermost patches half lies beyond the edge.
+      const double share =
+          (x < 0 || x == level.width() - 1 ? 0.5 : 1.0) * (y < 0 || y == level.height() - 1 ? 0.5 : 1.0);
+      // The bilinear patch between four texel centres is linear along lines; they run the way it is steeper, so that
+      // straight edges count exactly.
+      float a = alpha(x, y), b = alpha(x + 1, y), c = alpha(x, y + 1), d = alpha(x + 1, y + 1);
+      const auto [low, high] = std::minmax({a, b, c, d});
+      if (low >= cutoff) covered += share;
+      if (low >= cutoff || high < cutoff) continue;
+      if (std::abs(c + d - a - b) > std::abs(b + d - a - c)) std::swap(b, c);
+      for (int i = 0; i < kLines; ++i) {
+        const float t = (static_cast<float>(i) + 0.5f) / kLines;
+        covered += share / kLines * static_cast<double>(reached(a * (1 - t) + c * t, b * (1 - t) + d * t, cutoff));
+      }
+    }
+  return covered / static_cast<double>(level.size());
+}
+
+std::vector<Image<glm::vec4>> coveragePreservingMips(const Image<glm::vec4>& texels, float cutoff) {
   std::vector<Image<glm::vec4>> levels{texels};
-  Image<glm::vec4> finer = keptTexels(texels, cutoff, sampling);
-  while (finer.width() > 1 || finer.height() > 1) {
-    finer = halved(finer);
-    levels.push_back(finer);
+  const double wanted = coveredArea(texels, cutoff);
+  // Each level is halved from the unscaled one above it, so that no scale is applied twice.
+  Image<glm::vec4> averaged = texels;
+  while (averaged.width() > 1 || averaged.height() > 1) {
+    averaged = halved(averaged);
+    // Covered area grows with the scale, at times in steps: the nearest of both ends of the last interval.
+    float low = 0.0f, high = 1.0f;
+    while (coveredArea(averaged, cutoff, high) < wanted && high < 256.0f) high *= 2.0f;
+    for (int i = 0; i < 12; ++i) {
+      const float middle = 0.5f * (low + high);
+      (coveredArea(averaged, cutoff, middle) < wanted ? low : high) = middle;
+    }
+    const double below = wanted - coveredArea(averaged, cutoff, low),
+                 above = coveredArea(averaged, cutoff, high) - wanted;
+    float scale = below < above ? low : high;
+    // As good without: what nothing cuts is not brought near the cut. Nor is it by a hole that a level cannot show.
+    if (std::abs(coveredArea(averaged, cutoff) - wanted) <= std::min(below, above)) scale = 1.0f;
+    scale = std::max(scale, 0.5f * (1.0f + cutoff));
+    Image<glm::vec4> level = averaged;
+    for (std::size_t i = 0; i < level.size(); ++i) level[i].a = std::min(level[i].a * scale, 1.0f);
+    levels.push_back(std::move(level));
   }
   return levels;
 }

@@ -1,4 +1,4 @@
-// Cut-out surfaces: which textures are masks, and mip levels that hold what a cut leaves. MODEL section 10.
+// Cut-out surfaces: which textures are masks, and mip levels that keep what a mask covers. MODEL section 10.
 #pragma once
 #include <vector>
 
@@ -26,12 +26,11 @@ MaskMeasure measureMask(const Image<glm::vec4>& texels);
 // is alpha-tested, or blended with a base colour texture that is a mask.
 bool infersOcclusion(const Material& material, const Scene& scene);
 
-// Mip levels 0.. of a texture that is cut out. Level 0 is the texture. From level 1 on alpha is the part of a texel's
-// area that the cut leaves of level 0, filtered as the sampler does between its texels, and colours are the means of
-// what is left; so the mean of every level's alpha is that part of the whole. Levels halve, rounded down, to 1x1.
-//   cutoff    (0,1]
-//   sampling  how the texture is magnified, and what lies beyond its edges
-std::vector<Image<glm::vec4>> keptLevels(const Image<glm::vec4>& texels, float cutoff, const Sampling& sampling);
+// Mip levels 0.. of a mask's colour and alpha: colours averaged by what covers them, alpha averaged and then scaled so
+// that each level covers the same area at this cutoff as level 0 under bilinear filtering. Castano: Computing Alpha
+// Mipmaps, 2010. Levels halve, rounded down, to 1x1.
+//   cutoff  (0,1]
+std::vector<Image<glm::vec4>> coveragePreservingMips(const Image<glm::vec4>& texels, float cutoff);
 
 // Whether the texels of its base colour are filtered weighted by their alpha: clear ones then lend their colour to
 // none. Where alpha is not looked at, or is 1 everywhere, they are filtered as they are.
@@ -39,5 +38,8 @@ bool weighsByAlpha(const Material& material, const Scene& scene);
 
 // The cut that the base texture's own alpha has to reach, (0,1]; 0 for a material without one.
 float cutOfBase(const Material& material);
+
+// Part of a level's area whose bilinear alpha reaches the cutoff. [0,1]
+double coveredArea(const Image<glm::vec4>& level, float cutoff, float scale = 1.0f);
 
 }  // namespace pellucid

@@ -50,28 +50,11 @@ float thicknessTexel() {
   return texture(thicknessTexture, uvOf(4)).g;
 }
 
-#if defined(MASK_UNLEVELLED) || defined(MASK_LEVELLED)
-// Of the base texture, under an edge of so many pixels. Takes derivatives.
-float texelsHere(float edge) {
+#ifdef MASK_UNLEVELLED
+// Of the base texture, under this sample. Takes derivatives.
+float texelsHere() {
   vec2 at = uvOf(0) * vec2(textureSize(baseTexture, 0));
-  return texelsAcross(dFdx(at), dFdy(at), edge);
-}
-#endif
-
-#ifdef MASK_LEVELLED
-// Of a base texture whose mip levels hold what the cut leaves of it (engine_bridge/scene/foliage.h). Takes derivatives.
-//   most    alpha of a texel of 1
-//   texels  under the sample's maskEdge
-float levelledCoverageHere(float most, float texels) {
-  float cutoff = material.interface_.w;
-  float alpha = most * textureLod(baseTexture, uvOf(0), 0.0f).a;
-#ifdef MASK_HARD
-  return alpha >= cutoff ? 1.0f : 0.0f;
-#else
-  float sharp = maskCoverage(alpha, cutoff, footprint * fwidth(alpha) * rimLeft(texels));
-  float kept = most >= cutoff ? textureLod(baseTexture, uvOf(0), keptLevel(texels, footprint)).a : 0.0f;
-  return levelledCoverage(sharp, kept, texels);
-#endif
+  return texelsAcross(dFdx(at), dFdy(at), footprint);
 }
 #endif
 
@@ -80,7 +63,7 @@ float coverageOf(float alpha) {
 #if defined(MASK_SMOOTH)
   float rim = footprint * fwidth(alpha);
 #ifdef MASK_UNLEVELLED
-  rim *= rimLeft(texelsHere(footprint));
+  rim *= rimLeft(texelsHere());
 #endif
   float covered = maskCoverage(alpha, material.interface_.w, rim);
 #elif defined(MASK_HARD)
@@ -133,10 +116,7 @@ Surface surfaceHere() {
 #ifdef VERTEX_COLOUR
   point.base *= vertexColour;
 #endif
-#ifdef MASK_LEVELLED
-  float covered = levelledCoverageHere(point.base.a, texelsHere(maskEdge(footprint))) * material.covering.r;
-  point.base *= unweighted(textureLod(baseTexture, uvOf(0), log2(max(texelsHere(footprint), 1.0f))));
-#elif defined(BASE_TEXTURE)
+#ifdef BASE_TEXTURE
 #ifdef BASE_WEIGHTED
   point.base *= unweighted(texture(baseTexture, uvOf(0)));
 #else
@@ -162,8 +142,5 @@ Surface surfaceHere() {
   // What enters on a front face leaves through a back face: counted once.
   if (gl_FrontFacing) attenuation = attenuationOf(material.volume.rgb, ratio);
 #endif
-#ifndef MASK_LEVELLED
-  float covered = coverageOf(point.base.a);
-#endif
-  return surfaceOf(point, covered, attenuation, isUnlit());
+  return surfaceOf(point, coverageOf(point.base.a), attenuation, isUnlit());
 }

@@ -9,7 +9,6 @@
 
 #include "engine_bridge/scene/foliage.h"
 #include "samples/generate/hash.h"
-#include "shaders/mask.h"
 #include "shaders/shading.h"
 
 namespace pellucid::test {
@@ -34,9 +33,9 @@ struct Mask {
                               (at(x0, y0 + 1) * (1 - s) + at(x0 + 1, y0 + 1) * s) * t);
   }
   float finest(double u, double v) const { return levels.empty() ? 1.0f : bilinear(levels[0], u, v); }
-  float trilinear(double u, double v, float lod) const {
+  float trilinear(double u, double v, double lod) const {
     if (levels.empty()) return 1.0f;
-    const double level = std::clamp(static_cast<double>(lod), 0.0, static_cast<double>(levels.size() - 1));
+    const double level = std::clamp(lod, 0.0, static_cast<double>(levels.size() - 1));
     const auto low = static_cast<std::size_t>(level);
     const float a = bilinear(levels[low], u, v), b = bilinear(levels[std::min(low + 1, levels.size() - 1)], u, v);
     return a + (b - a) * static_cast<float>(level - static_cast<double>(low));
@@ -90,8 +89,7 @@ LeafWorld::LeafWorld(std::vector<Group> groups, double scale) : impl_(new Impl) 
   impl_->scale = scale;
   for (Group& group : groups) {
     Mask mask;
-    const Sampling clamped{Wrap::clamp, Wrap::clamp};
-    if (!group.mask.empty()) mask.levels = keptLevels(group.mask, kCutoff, clamped);
+    if (!group.mask.empty()) mask.levels = coveragePreservingMips(group.mask, kCutoff);
     impl_->masks.push_back(std::move(mask));
     for (const Card& card : group.cards)
       impl_->cards.push_back({{card.corner * scale, card.right * scale, card.up * scale}, impl_->masks.size() - 1});
@@ -234,22 +232,16 @@ LeafPicture LeafWorld::picture(const LeafView& view) const {
           const auto at = [&](double ax, double ay) { return Impl::onCard(card, eye, direction(ax, ay), other); };
           const glm::dvec2 corner = at(qx, qy), across = at(qx + 1, qy), down = at(qx, qy + 1);
           const double rho = std::max(glm::length((across - corner) * size), glm::length((down - corner) * size));
-          const auto texels = static_cast<float>(rho);
+          const double lod = std::log2(std::max(rho, 1e-9));
           const auto alpha = [&](double ax, double ay) {
             const glm::dvec2 there = at(ax, ay);
-            return mask.finest(there.x, there.y);
+            return mask.trilinear(there.x, there.y, lod);
           };
-          const float change =
-              std::abs(alpha(qx + 1, py) - alpha(qx, py)) + std::abs(alpha(px, qy + 1) - alpha(px, qy));
-          const float rim = change * shading::rimLeft(texels);
-          const auto covered = [&](double ax, double ay) {
-            const glm::dvec2 there = at(ax, ay);
-            return shading::levelledCoverage(shading::rimCoverage(alpha(ax, ay), kCutoff, rim),
-                                             mask.trilinear(there.x, there.y, shading::keptLevel(texels, 1.0f)),
-                                             texels);
-          };
-          coverage = covered(px, py);
-          gradient = {covered(qx + 1, py) - covered(qx, py), covered(px, qy + 1) - covered(px, qy)};
+          const float left = alpha(qx, py), right = alpha(qx + 1, py), top = alpha(px, qy), bottom = alpha(px, qy + 1);
+          const float change = std::abs(right - left) + std::abs(bottom - top);
+          const auto covered = [&](float a) { return shading::rimCoverage(a, kCutoff, change); };
+          coverage = covered(alpha(px, py));
+          gradient = {covered(right) - covered(left), covered(bottom) - covered(top)};
         }
         if (coverage <= 0.0f) continue;
         glm::dvec3 normal = glm::normalize(glm::cross(card.right, card.up));
