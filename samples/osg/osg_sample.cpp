@@ -122,7 +122,8 @@ osg::ref_ptr<osg::Geometry> geometryOf(const Part& part) {
   state->addUniform(new osg::Uniform("base", osg::Vec4(part.colour.r, part.colour.g, part.colour.b, part.coverage)));
   state->addUniform(
       new osg::Uniform("surfaceValues", osg::Vec4(part.roughness, part.transmission, part.ior, part.thickness)));
-  if (part.thickness > 0.0f || part.name.empty()) state->setAttributeAndModes(new osg::CullFace);
+  // Light meets both sides of a volume.
+  if (part.name.empty()) state->setAttributeAndModes(new osg::CullFace);
   return geometry;
 }
 

@@ -175,7 +175,7 @@ class PellucidPass : public vtkOpenGLRenderPass {
   bool SetShaderParameters(vtkShaderProgram* program, vtkAbstractMapper*, vtkProp*,
                            vtkOpenGLVertexArrayObject*) override {
     const auto name = static_cast<uint32_t>(program->GetHandle());
-    if (connected_.insert(name).second) check(pld_connect(pass_, name));
+    if (!bare && connected_.insert(name).second) check(pld_connect(pass_, name));
     return true;
   }
 
