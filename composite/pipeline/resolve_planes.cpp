@@ -94,7 +94,7 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
                         "file: light that is hidden twice does not add; accumulate them together",
                         request.planes[k]));
       if (more[0].edges != passes[0].edges)
-        throw MeaningError(fmt::format("{}: found --edges {}, expected {} of {}", request.planes[k],
+        throw MeaningError(fmt::format("{}: edges: found {}, expected {} as in {}", request.planes[k],
                                        more[0].edges ? "resolve" : "off", passes[0].edges ? "resolve" : "off",
                                        request.planes[0]));
       if (!more[0].relit.empty()) passes[0].relit = more[0].relit;
