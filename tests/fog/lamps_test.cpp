@@ -208,7 +208,7 @@ TEST_F(FogAndLamps, ASlabDimsTheCardBehindIt) {
   const std::string fog = "density=0.3,albedo=0,box=-50:-50:-4.9:50:50:-3";
   for (const auto& [shadows, tolerance] : {std::pair("exact", 1e-3), std::pair("stochastic", 0.02)}) {
     const float dimmed = composite({"--aa", "1", "--method", "over", "--shadows", shadows, "--fog", fog}).at(32, 32).r;
-    EXPECT_NEAR(dimmed / clear, std::exp(-2.0 * depth), tolerance) << shadows;
+    EXPECT_NEAR(static_cast<double>(dimmed) / clear, std::exp(-2.0 * depth), tolerance) << shadows;
   }
 }
 
