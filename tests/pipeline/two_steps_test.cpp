@@ -84,40 +84,34 @@ const Way kWays[] = {
     {"deep layers", [](Request&) {}},  // the files are the test's
 };
 
-TEST_F(TwoSteps, GiveTheBitsOfComposite) {
+// Two ways at once: all of them with each other.
+std::vector<std::pair<std::string, Request>> pairsOfWays(const ShotFiles& files, const std::string& opaque) {
+  std::vector<std::pair<std::string, Request>> pairs;
   for (const Way& first : kWays)
     for (const Way& second : kWays) {
       const auto shadows = [](const Way& way) { return std::string(way.name).find("shadows") != std::string::npos; };
       if (&first != &second && shadows(first) && shadows(second)) continue;  // by rays or by maps
-      Request request = requestOf(files.flat, files.scene);
-      const std::string names = std::string(first.name) + ", " + second.name;
-      SCOPED_TRACE(names);
+      Request request = requestOf(opaque, files.scene);
       for (const Way* way : {&first, &second}) {
         if (std::string(way->name) == "deep layers")
           request.shot.inputs = {files.scene, files.deepLayers};
         else
           way->ask(request);
       }
-      EXPECT_EQ(differing(inTwoSteps(request), atOnce(request)), 0u);
+      pairs.emplace_back(std::string(first.name) + ", " + second.name, request);
     }
+  return pairs;
+}
+
+TEST_F(TwoSteps, GiveTheBitsOfComposite) {
+  for (const auto& [names, request] : pairsOfWays(files, files.flat))
+    EXPECT_EQ(differing(inTwoSteps(request), atOnce(request)), 0u) << names;
 }
 
 // Planes of a deep picture are those of its places: each sample, and what shows beyond, has sums of its own.
 TEST_F(TwoSteps, OverADeepPictureGiveTheBitsOfComposite) {
-  for (const Way& first : kWays)
-    for (const Way& second : kWays) {
-      const auto shadows = [](const Way& way) { return std::string(way.name).find("shadows") != std::string::npos; };
-      if (&first != &second && shadows(first) && shadows(second)) continue;
-      Request request = requestOf(files.deepPicture, files.scene);
-      SCOPED_TRACE(std::string(first.name) + ", " + second.name);
-      for (const Way* way : {&first, &second}) {
-        if (std::string(way->name) == "deep layers")
-          request.shot.inputs = {files.scene, files.deepLayers};
-        else
-          way->ask(request);
-      }
-      EXPECT_EQ(differing(inTwoSteps(request), atOnce(request)), 0u);
-    }
+  for (const auto& [names, request] : pairsOfWays(files, files.deepPicture))
+    EXPECT_EQ(differing(inTwoSteps(request), atOnce(request)), 0u) << names;
 }
 
 TEST_F(TwoSteps, PlanesOfPlacesBelongToTheirPicture) {
