@@ -26,6 +26,8 @@ if(NOT PELLUCID_ROOMS)
   return()
 endif()
 install(TARGETS pellucid RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+install(TARGETS pellucid_images pellucid_grids pellucid_plots
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pellucid COMPONENT program)
 install(TARGETS ${rooms} EXPORT pellucid-rooms ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT rooms)
 install(DIRECTORY shaders gbuffer engine_bridge composite DESTINATION ${rooms_include} COMPONENT rooms
   FILES_MATCHING PATTERN "*.h" PATTERN "*.glsl" PATTERN "engine_bridge/c" EXCLUDE PATTERN "engine_bridge/include" EXCLUDE

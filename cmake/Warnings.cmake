@@ -14,3 +14,11 @@ if(PELLUCID_SANITIZE)
   target_compile_options(pellucid_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
   target_link_options(pellucid_options INTERFACE -fsanitize=address,undefined)
 endif()
+
+option(PELLUCID_TSAN "Thread sanitizer, with std::thread in the place of oneTBB (cmake/tsan)" OFF)
+if(PELLUCID_TSAN)
+  target_compile_options(pellucid_options INTERFACE -fsanitize=thread -fno-omit-frame-pointer -Wno-maybe-uninitialized -Wno-tsan)
+  target_link_options(pellucid_options INTERFACE -fsanitize=thread)
+  # Before every target, but for the part that includes OpenVDB, which needs the real library.
+  include_directories(BEFORE ${PROJECT_SOURCE_DIR}/cmake/tsan)
+endif()

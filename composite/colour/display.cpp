@@ -1,6 +1,5 @@
 #include "composite/colour/display.h"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -11,6 +10,7 @@
 #include "composite/colour/library.h"
 #include "gbuffer/atomic_file.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/image_codec.h"
 
 namespace pellucid {
 namespace {
@@ -111,12 +111,8 @@ void writePng(const std::string& path, const Image<glm::vec3>& shown) {
   for (std::size_t i = 0; i < shown.size(); ++i)
     for (int c = 0; c < 3; ++c) bytes.push_back(static_cast<std::uint8_t>(std::lround(shown[i][c] * 255.0f)));
   AtomicFile file(path);
-  OIIO::ImageSpec spec(shown.width(), shown.height(), 3, OIIO::TypeDesc::UINT8);
-  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("png");
-  if (!out || !out->open(file.temporary(), spec) || !out->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
-      !out->close())
-    throw ResourceError(
-        fmt::format("{}: cannot be written: {}", path, out ? out->geterror() : std::string("no writer of PNG")));
+  const std::string problem = imageCodec().writePng(file.temporary(), shown.width(), shown.height(), bytes.data());
+  if (!problem.empty()) throw ResourceError(fmt::format("{}: cannot be written: {}", path, problem));
   file.commit();
 }
 

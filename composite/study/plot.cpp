@@ -1,23 +1,17 @@
 #include "composite/study/plot.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "gbuffer/atomic_file.h"
-#include "gbuffer/errors.h"
+#include "gbuffer/loaded_part.h"
 
 namespace pellucid {
 namespace {
 
 constexpr double kLeastSeconds = 1e-6;
-constexpr double kLeft = 70, kRight = 660, kTop = 20, kBottom = 400, kLabels = 710;
-constexpr const char* kFont = "DejaVuSans";
-constexpr double kTextSize = 12, kDot = 4;
 
 double axis(double value, double low, double high, double from, double to) {
   return from + (std::log10(value) - low) / (high - low) * (to - from);
@@ -30,13 +24,14 @@ void label(const std::vector<StudyRow>& rows, Plot& plot) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return plot.dots[a].y < plot.dots[b].y; });
   std::vector<double> y;
-  for (const std::size_t i : order) y.push_back(std::max(plot.dots[i].y, y.empty() ? 0.0 : y.back() + kTextSize));
-  double lowest = kBottom;
-  for (std::size_t k = y.size(); k-- > 0; lowest = y[k] - kTextSize) y[k] = std::min(y[k], lowest);
+  for (const std::size_t i : order)
+    y.push_back(std::max(plot.dots[i].y, y.empty() ? 0.0 : y.back() + PlotLayout::textSize));
+  double lowest = PlotLayout::bottom;
+  for (std::size_t k = y.size(); k-- > 0; lowest = y[k] - PlotLayout::textSize) y[k] = std::min(y[k], lowest);
   for (std::size_t k = 0; k < order.size(); ++k) {
     const PlotDot& dot = plot.dots[order[k]];
-    plot.lines.push_back({dot.x, dot.y, kLabels - 4, y[k], PlotLine::leader});
-    plot.texts.push_back({kLabels, y[k] + 4, rowName(rows[order[k]]), -1});
+    plot.lines.push_back({dot.x, dot.y, PlotLayout::labels - 4, y[k], PlotLine::leader});
+    plot.texts.push_back({PlotLayout::labels, y[k] + 4, rowName(rows[order[k]]), -1});
   }
 }
 
@@ -66,19 +61,24 @@ Plot studyPlot(const std::vector<StudyRow>& rows) {
   const double y1 = std::ceil(std::log10(worst)),
                y0 = std::min(std::floor(std::log10(least)), y1 - 1) - (exact ? 1 : 0);
   const double lowest = std::pow(10, y0);
-  const auto px = [&](double s) { return axis(std::max(s, kLeastSeconds), x0, x1, kLeft, kRight); };
-  const auto py = [&](double e) { return axis(std::max(e, lowest), y0, y1, kBottom, kTop); };
+  const auto px = [&](double s) {
+    return axis(std::max(s, kLeastSeconds), x0, x1, PlotLayout::left, PlotLayout::right);
+  };
+  const auto py = [&](double e) { return axis(std::max(e, lowest), y0, y1, PlotLayout::bottom, PlotLayout::top); };
   Plot plot;
   for (double d = x0; d <= x1; ++d) {
-    plot.lines.push_back({px(std::pow(10, d)), kTop, px(std::pow(10, d)), kBottom, PlotLine::grid});
-    plot.texts.push_back({px(std::pow(10, d)), kBottom + 16, fmt::format("1e{:.0f}", d), 0});
+    plot.lines.push_back(
+        {px(std::pow(10, d)), PlotLayout::top, px(std::pow(10, d)), PlotLayout::bottom, PlotLine::grid});
+    plot.texts.push_back({px(std::pow(10, d)), PlotLayout::bottom + 16, fmt::format("1e{:.0f}", d), 0});
   }
   for (double d = y0; d <= y1; ++d) {
-    plot.lines.push_back({kLeft, py(std::pow(10, d)), kRight, py(std::pow(10, d)), PlotLine::grid});
-    plot.texts.push_back({kLeft - 6, py(std::pow(10, d)) + 4, exact && d == y0 ? "0" : fmt::format("1e{:.0f}", d), 1});
+    plot.lines.push_back(
+        {PlotLayout::left, py(std::pow(10, d)), PlotLayout::right, py(std::pow(10, d)), PlotLine::grid});
+    plot.texts.push_back(
+        {PlotLayout::left - 6, py(std::pow(10, d)) + 4, exact && d == y0 ? "0" : fmt::format("1e{:.0f}", d), 1});
   }
-  plot.texts.push_back({0.5 * (kLeft + kRight), kBottom + 36, "seconds", 0});
-  plot.texts.push_back({16, 0.5 * (kTop + kBottom), "RMSE against sorted over", 0, true});
+  plot.texts.push_back({0.5 * (PlotLayout::left + PlotLayout::right), PlotLayout::bottom + 36, "seconds", 0});
+  plot.texts.push_back({16, 0.5 * (PlotLayout::top + PlotLayout::bottom), "RMSE against sorted over", 0, true});
   std::vector<const StudyRow*> front;
   for (const StudyRow& row : rows)
     if (row.front) front.push_back(&row);
@@ -96,12 +96,12 @@ std::string plotSvg(const Plot& plot) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
       "font-family=\"sans-serif\" font-size=\"{2}\"><rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
-      plot.width, plot.height, kTextSize);
+      plot.width, plot.height, PlotLayout::textSize);
   for (const PlotLine& line : plot.lines)
     svg += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", line.x0,
                        line.y0, line.x1, line.y1, kLineColours[line.kind]);
   for (const PlotDot& dot : plot.dots)
-    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", dot.x, dot.y, kDot,
+    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", dot.x, dot.y, PlotLayout::dot,
                        dot.front ? "#c33" : "#456");
   for (const PlotText& text : plot.texts)
     svg += fmt::format("<text x=\"{0:.1f}\" y=\"{1:.1f}\" text-anchor=\"{2}\"{3}>{4}</text>\n", text.x, text.y,
@@ -114,55 +114,7 @@ std::string plotSvg(const Plot& plot) {
 }
 
 bool writePlotPng(const std::string& path, const Plot& plot) {
-  // Twice as large, then halved: lines and dots come out smooth.
-  constexpr int kScale = 2;
-  using namespace OIIO;
-  ImageBuf large(ImageSpec(plot.width * kScale, plot.height * kScale, 3, TypeDesc::FLOAT));
-  ImageBufAlgo::fill(large, {1.0f, 1.0f, 1.0f});
-  const float grid[] = {0.87f, 0.87f, 0.87f}, leader[] = {0.73f, 0.73f, 0.8f}, red[] = {0.8f, 0.2f, 0.2f},
-              blue[] = {0.27f, 0.33f, 0.4f}, black[] = {0.0f, 0.0f, 0.0f};
-  const auto at = [](double v) { return static_cast<int>(std::lround(v * kScale)); };
-  for (const PlotLine& line : plot.lines)
-    for (int dx = 0; dx < kScale; ++dx)
-      for (int dy = 0; dy < kScale; ++dy)
-        ImageBufAlgo::render_line(large, at(line.x0) + dx, at(line.y0) + dy, at(line.x1) + dx, at(line.y1) + dy,
-                                  line.kind == PlotLine::front    ? red
-                                  : line.kind == PlotLine::leader ? leader
-                                                                  : grid);
-  const int radius = static_cast<int>(kDot) * kScale;
-  for (const PlotDot& dot : plot.dots)
-    for (int y = -radius; y <= radius; ++y) {
-      const int reach = static_cast<int>(std::sqrt(static_cast<double>(radius * radius - y * y)));
-      ImageBufAlgo::render_line(large, at(dot.x) - reach, at(dot.y) + y, at(dot.x) + reach, at(dot.y) + y,
-                                dot.front ? red : blue);
-    }
-  bool labelled = true;
-  for (const PlotText& text : plot.texts) {
-    if (text.upright) {
-      // Written across, then turned.
-      const int length = at(kBottom - kTop), thick = at(1.5 * kTextSize);
-      ImageBuf label(ImageSpec(length, thick, 3, TypeDesc::FLOAT));
-      ImageBufAlgo::fill(label, {1.0f, 1.0f, 1.0f});
-      labelled =
-          ImageBufAlgo::render_text(label, length / 2, at(kTextSize), text.text, static_cast<int>(kTextSize) * kScale,
-                                    kFont, black, ImageBufAlgo::TextAlignX::Center) &&
-          labelled;
-      ImageBufAlgo::paste(large, at(text.x - kTextSize), at(text.y) - length / 2, 0, 0, ImageBufAlgo::rotate270(label));
-      continue;
-    }
-    const auto align = text.anchor < 0   ? ImageBufAlgo::TextAlignX::Left
-                       : text.anchor > 0 ? ImageBufAlgo::TextAlignX::Right
-                                         : ImageBufAlgo::TextAlignX::Center;
-    labelled = ImageBufAlgo::render_text(large, at(text.x), at(text.y), text.text, static_cast<int>(kTextSize) * kScale,
-                                         kFont, black, align) &&
-               labelled;
-  }
-  const ImageBuf small = ImageBufAlgo::resize(large, "", 0, ROI(0, plot.width, 0, plot.height, 0, 1, 0, 3));
-  AtomicFile file(path);
-  if (!small.write(file.temporary(), TypeDesc::UINT8, "png"))
-    throw ResourceError(fmt::format("{}: cannot be written: {}", path, small.geterror()));
-  file.commit();
-  return labelled;
+  return partFunction<PlotPngWriter*()>("pellucid_plots.so", "pellucidPlotPngWriter")()(path, plot);
 }
 
 }  // namespace pellucid

@@ -7,6 +7,12 @@
 
 namespace pellucid {
 
+// Where the plot's parts lie, in pixels of its picture.
+struct PlotLayout {
+  static constexpr double left = 70, right = 660, top = 20, bottom = 400, labels = 710;
+  static constexpr double textSize = 12, dot = 4;
+};
+
 struct PlotLine {
   enum Kind { grid, leader, front };  // a leader runs from a dot to its label
   double x0, y0, x1, y1;
@@ -33,6 +39,7 @@ struct Plot {
 
 Plot studyPlot(const std::vector<StudyRow>& rows);
 std::string plotSvg(const Plot& plot);  // self-contained
+using PlotPngWriter = bool(const std::string& path, const Plot& plot);
 // Throws ResourceError when it cannot be written. Without a font on the machine labels are left out; then false.
 bool writePlotPng(const std::string& path, const Plot& plot);
 

@@ -1,4 +1,4 @@
-// Density grids of OpenVDB: the only file that knows the library is density_grid.cpp.
+// Density grids of OpenVDB, which is loaded when the first of them is met.
 #pragma once
 #include <memory>
 #include <string>
@@ -13,6 +13,9 @@ struct GridOptions {
   double metresPerUnit = 1.0;  // --unit
   bool zUp = false;            // the file's up is z, as Blender's is; glTF's is y
 };
+
+using DensityGridReader = std::shared_ptr<const DensityGrid>(const std::string& path, const GridOptions& options,
+                                                             std::vector<std::string>& notes);
 
 // The active voxels of a fog volume, dense. Values below 0 and not finite are 0, and said in `notes`. Throws InputError
 // (missing, damaged), MeaningError (no such grid, a level set, a transform that bends), ResourceError (too large).

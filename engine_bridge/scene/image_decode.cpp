@@ -1,25 +1,20 @@
-// Encoded images to float RGBA, through OpenImageIO from memory.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+// Encoded images to float RGBA.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
-#include <memory>
 #include <string_view>
 
 #include "engine_bridge/scene/textures.h"
 #include "gbuffer/colour_space.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/image_codec.h"
 
 namespace pellucid::gltf {
 
 namespace {
-
-constexpr int kMostEdge = 16384;  // GL_MAX_TEXTURE_SIZE of the devices we draw with
 
 struct Signature {
   std::string_view bytes;
@@ -63,77 +58,15 @@ float decodeSrgb(float encoded, bool eightBit) {
   return kTable[static_cast<std::size_t>(std::lround(std::clamp(encoded, 0.0f, 1.0f) * 255.0f))];
 }
 
-// Integers are read as stored and divided here: OpenImageIO multiplies by a rounded 1/255.
-template <class T>
-bool readIntegers(OIIO::ImageInput& input, int channels, std::vector<float>& samples) {
-  std::vector<T> raw(samples.size());
-  if (!input.read_image(0, 0, 0, channels, OIIO::BaseTypeFromC<T>::value, raw.data())) return false;
-  constexpr auto kMost = static_cast<float>(std::numeric_limits<T>::max());
-  std::transform(raw.begin(), raw.end(), samples.begin(), [](T value) { return static_cast<float>(value) / kMost; });
-  return true;
-}
-
-bool readSamples(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channels, std::vector<float>& samples) {
-  samples.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
-                 static_cast<std::size_t>(channels));
-  if (spec.format.basetype == OIIO::TypeDesc::UINT8) return readIntegers<std::uint8_t>(input, channels, samples);
-  if (spec.format.basetype == OIIO::TypeDesc::UINT16) return readIntegers<std::uint16_t>(input, channels, samples);
-  return input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, samples.data());
-}
-
-// An image as it is stored, integers divided by their largest.
-struct Samples {
-  int width = 0, height = 0, channels = 0;  // at most 4 of them
-  bool floats = false, eightBit = false;
-  std::optional<Chromaticities> chromaticities;  // of EXR
-  std::vector<float> values;
-};
-
-std::optional<Chromaticities> statedBy(const OIIO::ImageSpec& spec) {
-  const OIIO::ParamValue* stated = spec.find_attribute("chromaticities");
-  if (!stated || stated->type() != OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8)) return std::nullopt;
-  const auto* numbers = static_cast<const float*>(stated->data());
-  const auto pair = [&](int i) { return glm::dvec2(glm::vec2(numbers[2 * i], numbers[2 * i + 1])); };
-  return Chromaticities{pair(0), pair(1), pair(2), pair(3)};
-}
-
-Samples readImage(const std::vector<std::uint8_t>& bytes, const std::string& format, const std::string& whose) {
-  const auto refuse = [&](const std::string& rest) { throw InputError(printable(whose + " " + rest)); };
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // glTF alpha is straight; OIIO would premultiply
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  const std::unique_ptr<OIIO::ImageInput> input = format.empty() ? nullptr : OIIO::ImageInput::create(format);
-  if (!input) {
-    OIIO::geterror();  // taken, or it would be printed later as somebody else's
-    refuse(fmt::format("is in no image format that is known ({} bytes); expected PNG or JPEG", bytes.size()));
-  }
-  if (!input->supports("ioproxy") || !input->set_ioproxy(&memory)) {
-    refuse(fmt::format("is a {} image, which cannot be read from memory; expected PNG or JPEG", format));
-  }
-  OIIO::ImageSpec spec;
-  const std::string fileName = "image." + format;
-  if (!input->open(fileName, spec, config)) {
-    refuse(fmt::format("cannot be read as {}: {}", format, input->geterror()));
-  }
-  if (spec.width < 1 || spec.height < 1 || spec.width > kMostEdge || spec.height > kMostEdge || spec.depth > 1 ||
-      spec.nchannels < 1 || spec.nchannels > 64) {
-    refuse(fmt::format("has {}x{} pixels of {} channels; expected 1 to {} pixels a side and 1 to 64 channels",
-                       spec.width, spec.height, spec.nchannels, kMostEdge));
-  }
-  Samples samples;
-  samples.width = spec.width;
-  samples.height = spec.height;
-  samples.channels = std::min(spec.nchannels, 4);
-  samples.floats = spec.format.is_floating_point();
-  samples.chromaticities = statedBy(spec);
-  samples.eightBit = spec.format.basetype == OIIO::TypeDesc::UINT8;
-  if (!readSamples(*input, spec, samples.channels, samples.values))
-    refuse(fmt::format("is damaged: {}", input->geterror()));
-  return samples;
+StoredImage readImage(const std::vector<std::uint8_t>& bytes, const std::string& format, const std::string& whose) {
+  StoredImage image;
+  const std::string problem = imageCodec().read(bytes, format, image);
+  if (!problem.empty()) throw InputError(printable(whose + " " + problem));
+  return image;
 }
 
 // The colours of `from`, which has no alpha, in place of those of `to`.
-void putColours(const Samples& from, Samples& to) {
+void putColours(const StoredImage& from, StoredImage& to) {
   if (from.channels != 3 || from.width != to.width || from.height != to.height) return;
   for (std::size_t i = 0; 4 * i < to.values.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) to.values[4 * i + c] = from.values[3 * i + c];
@@ -154,7 +87,7 @@ Image<glm::vec4> decodeImage(const std::vector<std::uint8_t>& bytes, TexelUse us
     throw InputError(printable(fmt::format("{} is a {} image that is cut short: found {} bytes and no end marker",
                                            whose, format, bytes.size())));
   }
-  Samples image = readImage(bytes, format, whose);
+  StoredImage image = readImage(bytes, format, whose);
   if (format == "webp" && image.channels == 4) {
     // OpenImageIO multiplies a WebP's colours by its alpha, in 8 bits and whatever it is asked for.
     if (const auto opaque = withoutWebpAlpha(bytes)) putColours(readImage(*opaque, format, whose), image);

@@ -37,7 +37,8 @@ const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine", 
                               {"EGL/", {"engine_bridge/gl", "samples/osg"}},
                               {"GL/", {"engine_bridge/gl", "engine_bridge/c", "samples/vtk"}},
                               {"embree3/", {"engine_bridge/embree"}},
-                              {"openvdb/", {"engine_bridge/scene"}},
+                              {"openvdb/", {"engine_bridge/scene/parts"}},
+                              {"OpenImageIO/", {"gbuffer/parts", "composite/study/parts", "samples"}},
                               {"OpenColorIO/", {"composite/colour"}},
                               {"OpenEXR/", {"gbuffer", "samples/generate"}}};
 
