@@ -87,6 +87,7 @@ void defineLayers(const LayerModel& model, const Planes& planes, bool showsThrou
   const auto define = [&](const char* name, bool wanted) {
     if (wanted) defines.emplace_back(name);
   };
+  define("SORTED", model.sorted);
   define("GREY", model.grey());
   define("AVERAGED_ONLY", model.averagedOnly());
   define("PUBLISHED", model.published());

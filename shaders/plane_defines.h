@@ -11,8 +11,8 @@
 //   NEAREST_Z          place of the nearest depth, where it is kept
 //   REFRACTION_Z(P), DIFFUSE_Z(P)  depths of what scatters: P(plane).component
 //
-// and what the layers are: GREY, AVERAGED_ONLY, HALF, PUBLISHED, FRONT_TAIL, SCATTER, DISPERSION, DIFFUSE_IN_ALPHA, as
-// in LayerModel; WEIGHT, NORMALISATION; for readers LIGHT_TARGET, NO_SOLIDS, HALF_SUMS, LOW_OVER.
+// and what the layers are: SORTED, GREY, AVERAGED_ONLY, HALF, PUBLISHED, FRONT_TAIL, SCATTER, DISPERSION,
+// DIFFUSE_IN_ALPHA, as in LayerModel; WEIGHT, NORMALISATION; for readers LIGHT_TARGET, NO_SOLIDS, HALF_SUMS, LOW_OVER.
 #pragma once
 #include <string>
 #include <vector>

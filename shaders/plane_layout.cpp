@@ -105,7 +105,22 @@ std::array<float, 4> clearOf(PlaneBlend blend, int components) {
   }
 }
 
+// Written once when the stage ends, never blended.
+std::vector<PlaneSpec> sortedPlanes() {
+  constexpr float far = std::numeric_limits<float>::infinity();
+  return {{PlaneSum::sortedLight, "sortedLight", 0, PlaneFormat::rgba32f, PlaneBlend::add, 1, {0, 0, 0, 0}, kNoPixels},
+          {PlaneSum::sortedTransmission,
+           "sortedTransmission",
+           1,
+           PlaneFormat::rgba32f,
+           PlaneBlend::add,
+           2,
+           {1, 1, 1, far},
+           kNoPixels}};
+}
+
 std::vector<PlaneSpec> layerPlanes(const LayerModel& model) {
+  if (model.sorted) return sortedPlanes();
   std::vector<PlaneSpec> planes;
   int next = 1;
   for (const Row& row : kRows) {
@@ -228,6 +243,11 @@ LayerConflict conflictOf(const LayerModel& m) {
     bool meet;
     LayerConflict conflict;
   } rules[] = {
+      {m.sorted && m.tier != PlaneTier::exact,
+       {LayerPart::sorted, LayerPart::exact, true, "which lists the layers that are to be sorted"}},
+      {m.sorted && m.scatters(),
+       {LayerPart::sorted, LayerPart::scattering, false, "which look up one background for all layers together"}},
+      {m.sorted && m.lowResolution, {LayerPart::sorted, LayerPart::lowResolution, false, "whose layers come as sums"}},
       {m.front && m.published(), {LayerPart::front, LayerPart::published, false, "which keeps no nearest layer"}},
       {m.disperses && m.published(),
        {LayerPart::dispersion, LayerPart::published, false, "which holds one offset for all channels"}},

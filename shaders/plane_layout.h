@@ -19,6 +19,7 @@ struct LayerModel {
   bool addsLight = true;  // some layer adds light
   bool refracts = false, diffuses = false;
   bool disperses = false;      // refracts, by wavelength
+  bool sorted = false;         // exact tier: composited in the order of depth when the stage ends; no sums at all
   bool front = false;          // front+tail: the nearest layer lies apart from the sums of the others
   bool nearestDepths = true;   // depth of the nearest layer and of the nearest that diffuses have a plane of their own
   bool solids = false;         // some fragment may hide everything
@@ -29,7 +30,7 @@ struct LayerModel {
   bool published() const { return tier == PlaneTier::published; }
   bool grey() const { return !coloured && !published(); }
   // Every layer enters the average and none adds light, so the sums that weigh light are left out.
-  bool averagedOnly() const { return !published() && !addsLight && !nearestDepths; }
+  bool averagedOnly() const { return !published() && !sorted && !addsLight && !nearestDepths; }
   // The nearest depth that diffuses is blended by MIN into the alpha of a sum, since it has no plane.
   bool diffuseInAlpha() const { return diffuses && !published() && !nearestDepths; }
   // Layers of low resolution that lie before the nearest layer have planes of their own.
@@ -41,7 +42,7 @@ struct LayerModel {
 LayerModel atLowResolution(LayerModel model);
 
 // Parts of a model that exclude each other, and why: a clause about the second.
-enum class LayerPart { published, exact, front, scattering, dispersion, refraction, lowResolution, none };
+enum class LayerPart { published, exact, front, scattering, dispersion, refraction, lowResolution, sorted, none };
 struct LayerConflict {
   LayerPart part = LayerPart::none, other = LayerPart::none;
   bool without = false;  // `other` is missing, not in the way
@@ -67,8 +68,10 @@ enum class PlaneSum {
   frontDepth,  // of the nearest layer: light and layers; tau
   rimAveraged,
   rimAdded,
-  rimGradient,  // gbuffer/rim_planes.h
-  frontZ        // what front+tail draws first: depth of the nearest layer
+  rimGradient,        // gbuffer/rim_planes.h
+  frontZ,             // what front+tail draws first: depth of the nearest layer
+  sortedLight,        // light of all layers over what is solid; layers
+  sortedTransmission  // what they let through; depth of the nearest
 };
 constexpr std::size_t kAddedSums = 7;
 bool isOfScattering(PlaneSum sum);  // what refraction and diffusion add to a pixel beside its layers' sums

@@ -64,7 +64,9 @@ std::string FragmentRoom::build() {
     if (!(stagesOf(p) & (1u << stage))) continue;
     std::vector<std::string> defines = foldDefines(stage == PLD_STAGE_LOW ? lowPermutation(p) : p, stage);
     defines.insert(defines.end(), places.begin(), places.end());
-    const char* const file = stage == PLD_STAGE_SOLIDS ? "gl/exact_solids.frag" : "gl/exact_fold.frag";
+    const char* const file = stage == PLD_STAGE_SOLIDS ? "gl/exact_solids.frag"
+                             : p.sorted()              ? "gl/exact_over.frag"
+                                                       : "gl/exact_fold.frag";
     std::string failure = folds_[stage].build(device_.gl, file, defines);
     if (!failure.empty()) return failure;
   }
@@ -130,7 +132,8 @@ void FragmentRoom::open() const {
   device_.allowColours(0, false);
 }
 
-pld_status FragmentRoom::fold(pld_stage stage, GLuint frame, int width, int height, const pld_frame& numbers) {
+pld_status FragmentRoom::fold(pld_stage stage, GLuint frame, int width, int height, const pld_frame& numbers,
+                              GLuint solid) {
   const GlFunctions& gl = device_.gl;
   setPlainDrawing(gl, width, height);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
@@ -139,6 +142,10 @@ pld_status FragmentRoom::fold(pld_stage stage, GLuint frame, int width, int heig
   const Program& fold = folds_[stage];
   device_.use(fold);
   gl.Uniform1i(fold.place(gl, "rowLength"), width_);
+  if (solid && device_.permutation.sorted()) {
+    device_.bind(device_.info.texture_unit, solid);
+    gl.Uniform1i(fold.place(gl, "solidHere"), static_cast<GLint>(device_.info.texture_unit));
+  }
   gl.Uniform4f(fold.place(gl, "weight"), numbers.weight_near, numbers.weight_far, numbers.weight_exponent,
                referenceOf(numbers));
   device_.drawEverywhere();

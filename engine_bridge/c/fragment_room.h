@@ -23,7 +23,8 @@ class FragmentRoom {
   void open() const;
   // Draws the stage's planes, of width x height, from its lists to `frame`. Waits for the device, and refuses lists
   // that are not whole.
-  pld_status fold(pld_stage stage, GLuint frame, int width, int height, const pld_frame& numbers);
+  //   solid  the plane of what is solid, 0 for none
+  pld_status fold(pld_stage stage, GLuint frame, int width, int height, const pld_frame& numbers, GLuint solid);
 
   uint64_t room() const { return room_; }            // in fragments
   uint64_t fragments() const { return fragments_; }  // in the fullest stage of the newest frame

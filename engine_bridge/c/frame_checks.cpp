@@ -197,7 +197,13 @@ pld_status checkFrame(Device& device, const pld_frame& frame, int width, int hei
   if (const pld_status status = checkNumbers(device, kBegin, frame, kEveryField); status != PLD_OK) return status;
   if (const char* field = changedField(device.permutation, frame))
     return device.fail(PLD_ERROR_ARGUMENT, "%s: frame.%s: found another than pld_fix() fixed", kBegin, field);
-  return checkTextures(device, frame, attachment);
+  if (device.trusts()) {
+    attachment = device.knownAttachment;
+    return checkLow(device, frame);
+  }
+  const pld_status status = checkTextures(device, frame, attachment);
+  device.knownAttachment = attachment;
+  return status;
 }
 
 }  // namespace pellucid::c

@@ -28,6 +28,7 @@ class HostTarget {
 
 // Views of shadow maps; of rims; of layers at low resolution.
 bool isOfShadows(pld_view view);
+bool isOutput(pld_view view);  // PLD_FEATURE_OUTPUTS
 bool isOfRims(pld_view view);
 bool isOfLow(pld_view view);
 

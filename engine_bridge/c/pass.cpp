@@ -127,6 +127,7 @@ pld_status pld_pass::resize(int width, int height) {
   if (width < 1 || height < 1 || width > most || height > most)
     return device.fail(PLD_ERROR_SIZE, "pld_resize: found %dx%d, expected 1 to %d pixels on either side", width, height,
                        most);
+  device.looked = false;
   if (width == width_ && height == height_) return PLD_OK;
   device.reportPendingErrors("pld_resize");
   pld_status status = PLD_OK;

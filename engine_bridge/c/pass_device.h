@@ -15,7 +15,9 @@ class Device {
   pld_create_info info{};   // as pld_create() was given it
   Permutation permutation;  // of info; pld_fix() adds constants to it
   Timers timers;
-  char message[512] = {};  // of the last call that failed
+  bool looked = false;         // a whole frame since pld_resize() was drawn, with its textures looked at
+  GLenum knownAttachment = 0;  // of the depth of the last frame that was looked at
+  char message[512] = {};      // of the last call that failed
 
   // Takes `create` over and loads GL. Nothing else of this class works before.
   pld_status load(const pld_create_info& create);
@@ -43,6 +45,9 @@ class Device {
   void restoreForDraws() const;
   void restoreActiveUnit() const;
   bool saves() const { return !(info.flags & PLD_FLAG_HOST_RESTORES); }
+
+  // Whether the textures of a frame are taken without a look.
+  bool trusts() const { return (info.flags & PLD_FLAG_TRUST_TEXTURES) != 0 && looked; }
 
   void pushGroup(const char* name) const;
   void popGroup() const;

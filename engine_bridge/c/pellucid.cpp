@@ -64,7 +64,7 @@ pld_status checkInfo(const pld_create_info& info) {
   struct {
     const char* name;
     int value, last;
-  } const choices[] = {{"method", info.method, PLD_METHOD_FRONT_TAIL},
+  } const choices[] = {{"method", info.method, PLD_METHOD_OVER},
                        {"tier", info.tier, PLD_TIER_EXACT},
                        {"weight", info.weight, static_cast<int>(pellucid::kDepthWeights.size()) - 1},
                        {"depth", info.depth, PLD_DEPTH_LINEAR},
@@ -78,9 +78,9 @@ pld_status checkInfo(const pld_create_info& info) {
     }
   constexpr uint32_t features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
                                 PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS |
-                                PLD_FEATURE_LOW_RESOLUTION;
-  constexpr uint32_t flags =
-      PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS | PLD_FLAG_VALIDATE;
+                                PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS;
+  constexpr uint32_t flags = PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS |
+                             PLD_FLAG_VALIDATE | PLD_FLAG_TRUST_TEXTURES;
   if ((info.features & ~features) || (info.flags & ~flags))
     return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: features or flags hold a bit that this version does not have");
   return PLD_OK;

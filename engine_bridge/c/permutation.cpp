@@ -62,6 +62,8 @@ const char* nameOf(LayerPart part) {
       return "PLD_TIER_PUBLISHED";
     case LayerPart::exact:
       return "PLD_TIER_EXACT";
+    case LayerPart::sorted:
+      return "PLD_METHOD_OVER";
     case LayerPart::front:
       return "PLD_METHOD_FRONT_TAIL";
     case LayerPart::dispersion:
@@ -108,8 +110,9 @@ LayerModel modelOf(const Permutation& p) {
   model.refracts = p.has(PLD_FEATURE_REFRACTION);
   model.diffuses = p.has(PLD_FEATURE_DIFFUSION);
   model.disperses = p.has(PLD_FEATURE_DISPERSION);
+  model.sorted = p.sorted();
   model.front = p.fronts();
-  model.nearestDepths = p.atLowResolution;
+  model.nearestDepths = p.atLowResolution || (p.outputs() && !p.sorted());
   model.solids = p.has(PLD_FEATURE_SOLIDS);
   model.rims = p.rimsApart();
   model.lowResolution = p.low() && !p.atLowResolution;
@@ -119,6 +122,8 @@ LayerModel modelOf(const Permutation& p) {
 std::string conflictOf(const Permutation& p) {
   if (p.scatters() && p.method == PLD_METHOD_WEIGHTED)
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
+  if (p.outputs() && p.published())
+    return "found PLD_FEATURE_OUTPUTS with PLD_TIER_PUBLISHED, which keeps no depth of a layer";
   const LayerConflict conflict = conflictOf(modelOf(p));
   if (!conflict) return {};
   return std::string("found ") + nameOf(conflict.part) + (conflict.without ? " without " : " with ") +
@@ -162,6 +167,7 @@ std::vector<std::string> foldDefines(const Permutation& p, pld_stage stage) {
   std::vector<std::string> defines = writeDefines(model, planeStageOf(stage));
   if (stage == PLD_STAGE_RIMS) defines.emplace_back("STAGE_RIMS");
   if (listsOffsets(model, planeStageOf(stage))) defines.emplace_back("LISTS_OFFSETS");
+  if (p.sorted() && p.has(PLD_FEATURE_SOLIDS)) defines.emplace_back("SOLIDS");
   return defines;
 }
 

@@ -22,6 +22,7 @@ struct Permutation {
 
   bool has(pld_feature feature) const { return (features & static_cast<uint32_t>(feature)) != 0; }
   bool scatters() const { return has(PLD_FEATURE_REFRACTION) || has(PLD_FEATURE_DIFFUSION); }
+  bool sorted() const { return method == PLD_METHOD_OVER; }
   bool fronts() const { return method == PLD_METHOD_FRONT_TAIL; }
   // Fragments are listed and summed at the end of a stage, not blended.
   bool exact() const { return tier == PLD_TIER_EXACT; }
@@ -34,7 +35,8 @@ struct Permutation {
   bool lowOver() const { return low() && fronts(); }  // what lies before the nearest layer has planes of its own
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // From sums of one kind what occlusion hides is taken later; others take rims that are dark already.
-  bool rimsInSeam() const { return rims() && (published() || fronts()); }
+  bool rimsInSeam() const { return rims() && (published() || fronts() || sorted()); }
+  bool outputs() const { return has(PLD_FEATURE_OUTPUTS); }
   bool rimsApart() const { return rims() && !rimsInSeam(); }
   int seamUnits() const { return rimsInSeam() ? 4 : 3; }  // textures that the seam reads
   // Whether planar depth is needed beside the host's.

@@ -15,7 +15,7 @@ Permutation lowPermutation(const Permutation& permutation) {
   Permutation low = permutation;
   low.atLowResolution = true;
   low.method = PLD_METHOD_WEIGHTED;  // of one texel
-  low.features &= ~static_cast<uint32_t>(PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS);
+  low.features &= ~static_cast<uint32_t>(PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_OUTPUTS);
   return low;
 }
 

@@ -155,7 +155,7 @@ void Stages::bindSeam(GLuint occlusion) const {
 bool Stages::attachDepth(const pld_frame& frame) const {
   if (!depthAttachment_) return true;
   device_.gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, depthAttachment_, GL_TEXTURE_2D, frame.depth_texture, 0);
-  if (device_.isComplete()) return true;
+  if (device_.trusts() || device_.isComplete()) return true;
   device_.gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, depthAttachment_, GL_TEXTURE_2D, 0, 0);
   return false;
 }
@@ -210,7 +210,8 @@ pld_status Stages::close(bool& whole) {
   const int pixelsATexel = stage_ == PLD_STAGE_LOW ? frame_.low_factor : 1;
   pld_status status = PLD_OK;
   if (device_.permutation.exact())
-    status = room_.fold(stage_, frameOf(stage_), frame_.width / pixelsATexel, frame_.height / pixelsATexel, frame_);
+    status = room_.fold(stage_, frameOf(stage_), frame_.width / pixelsATexel, frame_.height / pixelsATexel, frame_,
+                        stage_ == PLD_STAGE_LAYERS ? planes_.solid() : 0);
   whole = status == PLD_OK;
   if (whole && stage_ == PLD_STAGE_RIMS) status = rims_.darken(frame_);
   if (whole && stage_ == PLD_STAGE_LOW) low_.addToLayers(frame_);

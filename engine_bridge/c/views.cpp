@@ -7,6 +7,8 @@ namespace pellucid::c {
 std::string Views::build() {
   const std::vector<std::string> defines = resolveDefines(device_.permutation);
   std::string failure = picture_.build(device_.gl, "gl/picture.frag", defines);
+  if (failure.empty() && device_.permutation.outputs())
+    failure = outputs_.build(device_.gl, "gl/outputs.frag", defines);
   if (!failure.empty() || !(device_.info.flags & PLD_FLAG_DEBUG_VIEWS)) return failure;
   failure = view_.build(device_.gl, "gl/view.frag", defines);
   if (failure.empty()) failure = rims_.buildView();
@@ -17,13 +19,19 @@ std::string Views::build() {
 void Views::destroy() {
   picture_.destroy(device_.gl);
   view_.destroy(device_.gl);
+  outputs_.destroy(device_.gl);
   target_.destroy();
 }
 
 pld_status Views::check(const pld_target& target, const pld_frame& frame) {
-  if (target.view < PLD_VIEW_PICTURE || target.view > PLD_VIEW_SHADOW_DEPTH)
+  if (target.view < PLD_VIEW_PICTURE || target.view > PLD_VIEW_NEAREST_DEPTH)
     return device_.fail(PLD_ERROR_ARGUMENT, "pld_resolve: found view %d, which pld_view does not have",
                         static_cast<int>(target.view));
+  if (isOutput(target.view)) {
+    if (device_.permutation.outputs()) return PLD_OK;
+    return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: view %d needs PLD_FEATURE_OUTPUTS",
+                        static_cast<int>(target.view));
+  }
   if (target.view != PLD_VIEW_PICTURE && !(device_.info.flags & PLD_FLAG_DEBUG_VIEWS))
     return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: views need PLD_FLAG_DEBUG_VIEWS");
   const bool rims = isOfRims(target.view);
@@ -64,7 +72,7 @@ void Views::drawSpread(const pld_target& target, const pld_frame& frame) {
 
 void Views::drawSums(pld_view view, const pld_frame& frame) const {
   const GlFunctions& gl = device_.gl;
-  const Program& program = view == PLD_VIEW_PICTURE ? picture_ : view_;
+  const Program& program = view == PLD_VIEW_PICTURE ? picture_ : isOutput(view) ? outputs_ : view_;
   device_.use(program);
   gl.Uniform2i(program.place(gl, "pictureSize"), frame.width, frame.height);
   gl.Uniform1i(program.place(gl, "view"), static_cast<GLint>(view));
@@ -75,7 +83,8 @@ void Views::drawSums(pld_view view, const pld_frame& frame) const {
 pld_status Views::resolve(const pld_target& target, const pld_frame& frame) {
   const GlFunctions& gl = device_.gl;
   TextureFacts colour;
-  if (!factsOf(gl, frame.colour_texture, colour) || colour.width < frame.width || colour.height < frame.height)
+  if (!device_.trusts() &&
+      (!factsOf(gl, frame.colour_texture, colour) || colour.width < frame.width || colour.height < frame.height))
     return device_.fail(PLD_ERROR_TEXTURE, "pld_resolve: colour_texture %u is no longer what pld_begin saw",
                         frame.colour_texture);
   if (const pld_status status = target_.check(target, frame.width, frame.height, frame.colour_texture);
@@ -99,6 +108,7 @@ pld_status Views::resolve(const pld_target& target, const pld_frame& frame) {
     if (spread_.exist()) drawSpread(target, frame);
     drawSums(target.view, frame);
   }
+  device_.looked = true;
   target_.unbind(target);
   device_.restore();
   device_.popGroup();

@@ -45,7 +45,7 @@ class Views {
   SpreadLevels& spread_;
   CasterMaps& casters_;
   HostTarget target_;
-  Program picture_, view_;
+  Program picture_, view_, outputs_;
 };
 
 }  // namespace pellucid::c

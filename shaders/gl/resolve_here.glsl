@@ -35,7 +35,7 @@ struct VeilHere {
   vec4 applied;       // 2: transmission times what is seen; its mean times (1 - that alpha)
 };
 
-#ifndef PUBLISHED
+#if !defined(PUBLISHED) && !defined(SORTED)
 #define FETCH_SUM(type, plane, field) targets.field = texelHere(plane, pixel);
 #define TEXEL_HERE(plane) texelHere(plane, pixel)
 
@@ -53,7 +53,10 @@ VeilHere veilAt(ivec2 pixel) {
   veil.resolved.transparent = vec3(0.0f);
   veil.resolved.transmission = vec3(1.0f);
   veil.applied = vec4(0.0f);
-#ifdef PUBLISHED
+#if defined(SORTED)
+  vec4 light = texelHere(sortedLight, pixel);
+  bool any = light.a != 0.0f;
+#elif defined(PUBLISHED)
   PublishedSums sums = publishedAt(pixel);
   bool any = anyPublished(sums);
 #else
@@ -77,7 +80,11 @@ VeilHere veilAt(ivec2 pixel) {
   hidesAll = hidesAll && !scatters;
 #endif
   if (!any && !hidesAll) return veil;
-#ifdef PUBLISHED
+#if defined(SORTED)
+  veil.resolved.transparent = light.rgb;
+  veil.resolved.transmission = texelHere(sortedTransmission, pixel).rgb;
+  hidesAll = false;  // what is solid lies under the layers already
+#elif defined(PUBLISHED)
   veil.resolved = resolvePublished(sums.numerator, sums.denominator, sums.beta, modulateSelf != 0);
 #elif defined(DECODED_PUBLISHED)
   veil.resolved = resolvePublished(sums.numerator, sums.denominator.r, sums.depth, modulateSelf != 0);

@@ -17,7 +17,13 @@ void main() {
   float count = float(min(veil.kind, 1));
   vec3 mean = vec3(0.0f), weight = vec3(0.0f), added = vec3(0.0f);
   vec2 clamped = vec2(0.0f);
-#ifdef PUBLISHED
+#if defined(SORTED)
+  vec4 light = texelHere(sortedLight, pixel);
+  vec3 opacity = vec3(1.0f) - veil.resolved.transmission;
+  count = light.a * 0.0625f;
+  mean = vec3(meanColour(light.r, opacity.r), meanColour(light.g, opacity.g), meanColour(light.b, opacity.b));
+  float largest = max(max(light.r, light.g), light.b);
+#elif defined(PUBLISHED)
   PublishedSums sums = publishedAt(pixel);
   mean = sums.numerator / max(sums.denominator, PLD_LEAST_DENOMINATOR);
   float largest = max(max(sums.numerator.r, sums.numerator.g), max(sums.numerator.b, sums.denominator));

@@ -83,8 +83,8 @@ TEST(BridgeInstall, ComponentsStandAlone) {
   const std::pair<const char*, std::vector<const char*>> components[] = {
       {"c", {"lib/libpellucid_c.so.0"}},
       {"dev",
-       {"lib/libpellucid_c.so", "include/pellucid/pellucid.h", "lib/cmake/pellucid/pellucidConfig.cmake",
-        "lib/cmake/pellucid/pellucid-c.cmake", "lib/pkgconfig/pellucid.pc"}},
+       {"lib/libpellucid_c.so", "include/pellucid/pellucid.h", "include/pellucid/pellucid.hpp",
+        "lib/cmake/pellucid/pellucidConfig.cmake", "lib/cmake/pellucid/pellucid-c.cmake", "lib/pkgconfig/pellucid.pc"}},
       {"docs", {"share/doc/pellucid/LICENSE", "share/doc/pellucid/INTEGRATION.md"}}};
   std::uintmax_t bytes = 0;
   for (const auto& [component, files] : components) {

@@ -10,126 +10,16 @@
 #include "composite/methods/method.h"
 #include "composite/resolve.h"
 #include "gbuffer/published.h"
-#include "tests/bridge/host.h"
-#include "tests/support/random.h"
+#include "tests/bridge/replayed_shot.h"
 
 namespace pellucid::test {
 namespace {
 
-constexpr int kWidth = 120, kHeight = 90;
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
-
-struct Wanted {
-  bool coloured = true, light = true, refracts = false, diffuses = false, disperses = false, solids = false;
-};
-
-struct Shot {
-  GBuffer gbuffer;
-  FragmentLists lists;
-
-  explicit Shot(const Wanted& wanted) {
-    Random random(7);
-    gbuffer.display = gbuffer.data = lists.window = {0, 0, kWidth, kHeight};
-    gbuffer.beauty = Image<glm::vec4>(kWidth, kHeight);
-    gbuffer.viewZ = Image<float>(kWidth, kHeight);
-    lists.solid = Image<glm::vec4>(kWidth, kHeight, glm::vec4(0, 0, 0, INFINITY));
-    lists.offsets.push_back(0);
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        gbuffer.beauty.at(x, y) =
-            glm::vec4(random.uniformf(), 3 * random.uniformf(), (x / 9 + y / 7) % 2, random.below(3) ? 1.0f : 0.5f);
-        gbuffer.viewZ.at(x, y) = (x / 20) % 3 ? 20.0f : (y / 16) % 2 ? 12.0f : INFINITY;
-        const std::uint32_t layers = random.below(4) ? random.below(9) : 0;
-        for (std::uint32_t i = 0; i < layers; ++i) add(random, wanted);
-        if (wanted.solids && random.below(3) == 0) {
-          Fragment solid{};
-          solid.radiance = glm::vec3(random.uniformf(), 1.0f, 0.25f);
-          solid.coverage = 1.0f;
-          solid.z = 2.0f + 4.0f * random.uniformf();
-          lists.fragments.push_back(solid);
-          if (!lists.dispersion.empty() || wanted.disperses) lists.dispersion.emplace_back(0.0f);
-          lists.solid.at(x, y) = glm::vec4(solid.radiance, solid.z);
-        }
-        lists.offsets.push_back(lists.fragments.size());
-      }
-  }
-
- private:
-  void add(Random& random, const Wanted& wanted) {
-    Fragment fragment{};
-    fragment.coverage = wanted.light && random.below(6) == 0 ? 0.0f : 0.9f * random.uniformf() + 0.05f;
-    const float grey = random.uniformf();
-    // Within a thousandth of 1 it adds light.
-    const float most = wanted.light ? 1.0f : 0.998f;
-    fragment.transmission =
-        most * (wanted.coloured
-                    ? glm::vec3(random.uniformf(), random.below(3) || !wanted.light ? random.uniformf() : 1.0f, grey)
-                    : glm::vec3(0.9f * grey));
-    fragment.radiance = glm::vec3(random.uniformf(), 50 * random.uniformf(), 0.01f);
-    fragment.z = 1.0f + 8.0f * random.uniformf();
-    glm::vec4 dispersion(0.0f);
-    if (wanted.refracts && random.below(2)) {
-      fragment.offset = glm::vec2(40 * random.uniformf() - 20, 30 * random.uniformf() - 15);
-      if (random.below(2)) dispersion = glm::vec4(-1, 0.5f, 2 * random.uniformf(), -0.25f);
-    }
-    if (wanted.diffuses && random.below(3) == 0) fragment.variance = 60.0f * random.uniformf();
-    fragment.identity = static_cast<std::uint32_t>(lists.fragments.size());
-    lists.fragments.push_back(fragment);
-    if (wanted.disperses) lists.dispersion.push_back(dispersion);
-  }
-};
-
-uint32_t featuresOf(const Wanted& wanted) {
-  uint32_t features = 0;
-  const auto add = [&](bool has, pld_feature feature) { features |= has ? static_cast<uint32_t>(feature) : 0u; };
-  add(wanted.coloured, PLD_FEATURE_COLOURED);
-  add(wanted.light, PLD_FEATURE_LIGHT);
-  add(wanted.refracts, PLD_FEATURE_REFRACTION);
-  add(wanted.diffuses, PLD_FEATURE_DIFFUSION);
-  add(wanted.disperses, PLD_FEATURE_DISPERSION);
-  add(wanted.solids, PLD_FEATURE_SOLIDS);
-  return features;
-}
-
 Image<glm::vec4> offline(const Shot& shot) {
   OitPlanes planes = emptyPlanes(shot.gbuffer.display, shot.gbuffer.data);
-  planes.info.weight = kWeight;
-  foldFragments(shot.lists, kWeight, shading::PLD_NORMALISE_SPECTRAL, planes);
+  planes.info.weight = kShotWeight;
+  foldFragments(shot.lists, kShotWeight, shading::PLD_NORMALISE_SPECTRAL, planes);
   return compose(resolveOver(planes, {}, {}, shot.gbuffer), shot.gbuffer).rgba;
-}
-
-std::vector<float> bridged(const Shot& shot, const Wanted& wanted, pld_tier tier, pld_method method) {
-  Host host(kWidth, kHeight);
-  host.upload(shot.gbuffer);
-  pld_create_info info = host.info();
-  info.features = featuresOf(wanted);
-  info.tier = tier;
-  info.method = method;
-  info.fragments_per_pixel = 10.0f;
-  info.storage_binding = 7;
-  pld_pass* pass = host.create(info);
-  if (!pass) return {};
-  std::vector<pld_stage> stages;
-  if (wanted.solids) stages.push_back(PLD_STAGE_SOLIDS);
-  if (method == PLD_METHOD_FRONT_TAIL && tier != PLD_TIER_EXACT) stages.push_back(PLD_STAGE_FRONT);
-  stages.push_back(PLD_STAGE_LAYERS);
-  replay(pass, shot.lists, host.frame(), stages);
-  return host.finish(pass);
-}
-
-struct Difference {
-  std::size_t words = 0;
-  double largest = 0;
-};
-Difference compare(const Image<glm::vec4>& expected, const std::vector<float>& found) {
-  Difference difference;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const float a = expected[i / 4][static_cast<int>(i % 4)], b = found[i];
-    if (std::memcmp(&a, &b, sizeof(a)) != 0) ++difference.words;
-    difference.largest =
-        std::max(difference.largest, std::abs(double(a) - double(b)) / std::max(1.0, std::abs(double(a))));
-  }
-  return difference;
 }
 
 void expectSameBits(const char* what, const Wanted& wanted) {
@@ -178,7 +68,7 @@ TEST(BridgeReplay, HostsBeforeVersionFourKeepTheLightOfWhatScatters) {
   GlContext context;
   const Wanted wanted{.refracts = true, .diffuses = true};
   const Shot shot(wanted);
-  Host host(kWidth, kHeight);
+  Host host(kShotWidth, kShotHeight);
   host.upload(shot.gbuffer);
   pld_create_info info = host.info();
   info.features = featuresOf(wanted) & ~static_cast<uint32_t>(PLD_FEATURE_LIGHT);
@@ -236,13 +126,13 @@ TEST(BridgeReplay, PlanesHoldNothingThatIsNotRead) {
 // decoder.
 OitPlanes decoded(pld_pass* pass, const Shot& shot, bool scatters) {
   OitPlanes planes = emptyPublishedPlanes(shot.gbuffer.display, shot.gbuffer.data);
-  planes.info.weight = kWeight;
+  planes.info.weight = kShotWeight;
   planes.solid = shot.lists.solid;
   if (scatters) addScatterPlanes(planes);
   uint64_t names[3] = {};
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(pld_query(pass, static_cast<pld_value>(PLD_VALUE_FIRST_PLANE + i), &names[i]), PLD_OK);
-  constexpr std::size_t pixels = static_cast<std::size_t>(kWidth) * kHeight;
+  constexpr std::size_t pixels = static_cast<std::size_t>(kShotWidth) * kShotHeight;
   std::vector<float> radiance(pixels * 4);
   std::vector<std::uint8_t> beta(pixels * 4);
   std::vector<std::int8_t> delta(pixels * 2);
@@ -257,7 +147,7 @@ OitPlanes decoded(pld_pass* pass, const Shot& shot, bool scatters) {
     for (std::size_t c = 0; c < 4; ++c) pixel.radiance[static_cast<int>(c)] = radiance[4 * i + c];
     for (std::size_t c = 0; c < 4; ++c) pixel.beta[c] = beta[4 * i + c];
     for (std::size_t c = 0; c < 2; ++c) pixel.delta[c] = delta[2 * i + c];
-    storePublished(pixel, planes, static_cast<int>(i) % kWidth, static_cast<int>(i) / kWidth, clamps);
+    storePublished(pixel, planes, static_cast<int>(i) % kShotWidth, static_cast<int>(i) / kShotWidth, clamps);
   }
   return planes;
 }
@@ -267,7 +157,7 @@ TEST(BridgeReplay, PublishedTierResolvesItsPlanesToTheOfflineBits) {
   for (const bool scatters : {false, true}) {
     const Wanted wanted{.light = false, .refracts = scatters, .diffuses = scatters};
     const Shot shot(wanted);
-    Host host(kWidth, kHeight);
+    Host host(kShotWidth, kShotHeight);
     host.upload(shot.gbuffer);
     pld_create_info info = host.info();
     info.features = featuresOf(wanted);
@@ -286,7 +176,7 @@ TEST(BridgeReplay, PublishedTierResolvesItsPlanesToTheOfflineBits) {
     // The planes: a step a layer, eight layers.
     OitPlanes folded = emptyPublishedPlanes(shot.gbuffer.display, shot.gbuffer.data);
     PublishedClamps clamps;
-    foldPublished(shot.lists, kWeight, folded, clamps);
+    foldPublished(shot.lists, kShotWeight, folded, clamps);
     double worst = 0;
     for (std::size_t i = 0; i < planes.depth.size(); ++i)
       for (int c = 0; c < 3; ++c)
@@ -336,9 +226,9 @@ TEST(BridgeReplay, FrontAndTailIsTheMethod) {
   for (const bool coloured : {true, false}) {
     const Wanted wanted{.coloured = coloured, .light = coloured};
     const Shot shot(wanted);
-    Veil veil(kWidth, kHeight);
+    Veil veil(kShotWidth, kShotHeight);
     MethodChoice choice;
-    choice.weight = kWeight;
+    choice.weight = kShotWeight;
     compositeBy(*chooseMethod("front+tail"), choice, shot.lists, shot.gbuffer.data, veil);
     const Image<glm::vec4> expected = compose(veil, shot.gbuffer).rgba;
     for (const pld_tier tier : {PLD_TIER_FLOAT, PLD_TIER_EXACT}) {

@@ -122,7 +122,8 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
        PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION |
            PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
        {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
-      {"exact, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, {PLD_STAGE_LAYERS}}};
+      {"exact, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, {PLD_STAGE_LAYERS}},
+      {"exact, over", PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_OUTPUTS, {PLD_STAGE_LAYERS}}};
   GlContext context;
   Host host(48, 32);
   for (const Kind& kind : kinds) {
@@ -189,6 +190,51 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     EXPECT_GT(total, 1000);
     pld_destroy(&pass);
   }
+}
+
+// With PLD_FLAG_TRUST_TEXTURES the first frame is looked at, and no later one; pld_resize() has the next looked at
+// again.
+TEST(BridgeSteady, ATrustedHostIsAskedNothing) {
+  GlContext context;
+  Host host(48, 32);
+  pld_create_info info = host.info();
+  info.get_proc_address = counted;
+  info.features =
+      PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_SOLIDS;
+  info.flags = PLD_FLAG_HOST_RESTORES | PLD_FLAG_TRUST_TEXTURES;
+  pld_pass* pass = host.create(info);
+  ASSERT_NE(pass, nullptr);
+  pld_frame frame = host.frame();
+  const pld_target target = host.target();
+  const auto draw = [&] {
+    for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS}) {
+      ASSERT_EQ(inside([&] { return pld_begin(pass, stage, &frame); }), PLD_OK) << pld_message(pass);
+      ASSERT_EQ(inside([&] { return pld_end(pass); }), PLD_OK) << pld_message(pass);
+    }
+    ASSERT_EQ(inside([&] { return pld_resolve(pass, &target); }), PLD_OK) << pld_message(pass);
+  };
+  const auto asked = [&] {
+    std::string names;
+    for (const auto& [name, count] : calls)
+      if (count > 0 && (name.rfind("glGet", 0) == 0 || name.rfind("glIs", 0) == 0 || name.rfind("glCheck", 0) == 0))
+        names += name + " ";
+    return names;
+  };
+  calls.clear();
+  draw();
+  EXPECT_NE(asked(), "") << "the counter counts";
+  calls.clear();
+  draw();
+  int total = 0;
+  for (const auto& [name, count] : calls) total += count;
+  std::printf("a trusted host that restores: %d GL calls a frame of two stages, asked: %s\n", total,
+              asked().empty() ? "nothing" : asked().c_str());
+  EXPECT_EQ(asked(), "");
+  EXPECT_LE(total, 250);
+  ASSERT_EQ(pld_resize(pass, 48, 32), PLD_OK);
+  frame.depth_texture = 77777;
+  EXPECT_EQ(pld_begin(pass, PLD_STAGE_SOLIDS, &frame), PLD_ERROR_TEXTURE);
+  pld_destroy(&pass);
 }
 
 // A timestamp after each draw of the library's and at the end of each stage keeps llvmpipe's fences; elsewhere there is

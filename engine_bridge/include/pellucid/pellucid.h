@@ -16,15 +16,17 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR                                                                          \
-  6 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
+  7 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
        rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,    \
        the exact tier; refraction and diffusion without PLD_FEATURE_LIGHT keep no light that adds, \
        which is implied for hosts of before. 0.5: PLD_FLAG_VALIDATE, pld_create_info.message; what \
        could be misused in silence is refused, and to hosts of before said as a warning.           \
-       0.6: pld_frame.weight_reference.                                                            \
+       0.6: pld_frame.weight_reference. 0.7: PLD_METHOD_OVER, PLD_FEATURE_OUTPUTS,                 \
+       PLD_FLAG_TRUST_TEXTURES.                                                                    \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -76,7 +78,11 @@ typedef PLD_ENUM(pld_method){
     PLD_METHOD_PHENOMENOLOGICAL = 0, /* weighted sums, refraction and diffusion where the features ask */
     PLD_METHOD_WEIGHTED = 1,         /* the same sums; refuses the scattering features */
     PLD_METHOD_FRONT_TAIL =
-        2 /* the nearest layer exactly over weighted sums; geometry is drawn twice, in the exact tier once */
+        2, /* the nearest layer exactly over weighted sums; geometry is drawn twice, in the exact tier once */
+    PLD_METHOD_OVER =
+        3 /* the truth: all layers sorted by depth and composited in double precision, as `pellucid composite` does
+             without a method. In PLD_TIER_EXACT alone; refuses the scattering features and low resolution. Reads no
+             weight, keeps coloured transmission and light that adds without being asked */
 } pld_method;
 
 typedef PLD_ENUM(pld_tier){
@@ -109,6 +115,9 @@ typedef PLD_ENUM(pld_feature){
            to upsample by, nor in the exact tier with PLD_METHOD_FRONT_TAIL, which keeps no nearest depth
            (`pellucid composite` refuses --low-res with --precision published and exact, and with
            --method front+tail, which it works out from all fragments) */
+    ,
+    PLD_FEATURE_OUTPUTS = 256 /* what later passes ask of the layers: PLD_VIEW_REACTIVE and PLD_VIEW_NEAREST_DEPTH, for
+                                 which a plane keeps the depth of the nearest layer. Not in the published tier */
 } pld_feature;
 
 /* Diagnostics, for pld_create_info.flags. */
@@ -116,13 +125,18 @@ typedef PLD_ENUM(pld_flag){
     PLD_FLAG_TIMERS = 2,       /* GPU times of every stage, see pld_query() */
     PLD_FLAG_DEBUG_GROUPS = 4, /* KHR_debug groups around every stage */
     PLD_FLAG_DEBUG_VIEWS = 8,  /* pld_target.view may ask for a plane instead of the picture */
-    PLD_FLAG_VALIDATE = 16     /* pld_end() and pld_shadow_end() look at what the host did since the begin, and say of
-                                  the first thing that is wrong what it is, with PLD_ERROR_MISUSE: the framebuffer,
-                                  viewport, blending, colour masks or depth test are others; the seam's textures and
-                                  buffers are; or, if anything was drawn, the program that is in use holds no text of
-                                  this pass, that of another stage or pass, or is not connected. It waits for the
-                                  device at every end, and counts GL_PRIMITIVES_GENERATED. Keep the last program in use
-                                  until the end; those of pipelines are not looked into */
+    PLD_FLAG_TRUST_TEXTURES =
+        32,                /* not a diagnostic either: the textures and targets of every frame are of the kinds
+                              and formats, and at least of the sizes, of those of the first whole frame since
+                              pld_resize(), which are looked at, and its context is current. The library then asks GL nothing about
+                              them; with PLD_FLAG_HOST_RESTORES it asks GL nothing at all */
+    PLD_FLAG_VALIDATE = 16 /* pld_end() and pld_shadow_end() look at what the host did since the begin, and say of
+                              the first thing that is wrong what it is, with PLD_ERROR_MISUSE: the framebuffer,
+                              viewport, blending, colour masks or depth test are others; the seam's textures and
+                              buffers are; or, if anything was drawn, the program that is in use holds no text of
+                              this pass, that of another stage or pass, or is not connected. It waits for the
+                              device at every end, and counts GL_PRIMITIVES_GENERATED. Keep the last program in use
+                              until the end; those of pipelines are not looked into */
 } pld_flag;
 /* Not a diagnostic but a contract, for pld_create_info.flags too: nothing is saved or put back, and the host sets all
    state of INTEGRATION.md itself. */
@@ -267,7 +281,12 @@ typedef PLD_ENUM(pld_view){
        either way. */
     PLD_VIEW_SHADOW_TRANSMISSION = 15, /* what all of a texel's casters leave of the light */
     PLD_VIEW_SHADOW_COINS = 16,        /* in what part of a texel's samples coins have left a caster, per channel */
-    PLD_VIEW_SHADOW_DEPTH = 17 /* their mean depth, 0 at near_depth (of local lights, at the light), 1 at far_depth */
+    PLD_VIEW_SHADOW_DEPTH = 17, /* their mean depth, 0 at near_depth (of local lights, at the light), 1 at far_depth */
+    /* With PLD_FEATURE_OUTPUTS, and without PLD_FLAG_DEBUG_VIEWS: */
+    PLD_VIEW_REACTIVE =
+        18, /* 1 - beta, the mean of its channels: what part of a pixel is not the opaque picture's, as
+               temporal antialiasing and upscalers ask. Light that adds and hides nothing is not in it */
+    PLD_VIEW_NEAREST_DEPTH = 19 /* planar metres of the nearest layer, +inf where none is */
 } pld_view;
 
 typedef PLD_ENUM(pld_target_kind){PLD_TARGET_TEXTURE = 0, PLD_TARGET_FRAMEBUFFER = 1} pld_target_kind;
@@ -456,6 +475,57 @@ PLD_API pld_status pld_shadow_glsl(pld_pass* pass, pld_shadow_text which, int32_
 PLD_API const char* pld_message(const pld_pass* pass);
 /* "PLD_ERROR_ORDER" and the like. */
 PLD_API const char* pld_status_name(pld_status status);
+
+/* Structs with their size and version, and with what most hosts say: nothing is 0 that may not be. A host fills in the
+   rest. */
+static inline pld_create_info pld_create_info_init(void) {
+  pld_create_info info;
+  memset(&info, 0, sizeof(info));
+  info.struct_size = sizeof(info);
+  info.version = PLD_VERSION;
+  return info; /* get_proc_address, and in PLD_TIER_EXACT fragments_per_pixel, are the host's to say */
+}
+static inline pld_frame pld_frame_init(void) {
+  pld_frame frame;
+  memset(&frame, 0, sizeof(frame));
+  frame.struct_size = sizeof(frame);
+  frame.metres_per_unit = frame.pre_exposure = frame.weight_reference = 1.0f;
+  frame.weight_near = 0.1f;
+  frame.weight_far = 1000.0f;
+  frame.weight_exponent = 3.0f;
+  frame.refract_distance = 1.0f;
+  frame.diffusion_k0 = 0.3f;
+  frame.diffusion_k1 = 0.5f;
+  frame.low_factor = 2;
+  return frame; /* textures, size and projection are the host's to say */
+}
+static inline pld_target pld_target_init(pld_target_kind kind, uint32_t name) {
+  pld_target target;
+  memset(&target, 0, sizeof(target));
+  target.struct_size = sizeof(target);
+  target.kind = kind;
+  target.name = name;
+  return target;
+}
+static inline pld_shadow_info pld_shadow_info_init(int32_t size, int32_t lights, int32_t faces) {
+  pld_shadow_info info;
+  memset(&info, 0, sizeof(info));
+  info.struct_size = sizeof(info);
+  info.size = size;
+  info.lights = lights;
+  info.faces = faces;
+  info.coloured = 1;
+  info.closer_edge = 4;
+  return info;
+}
+static inline pld_shadow_view pld_shadow_view_init(pld_light kind) {
+  pld_shadow_view view;
+  memset(&view, 0, sizeof(view));
+  view.struct_size = sizeof(view);
+  view.kind = kind;
+  view.faces = 1;
+  return view;
+}
 
 #ifdef __cplusplus
 }
