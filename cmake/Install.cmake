@@ -32,8 +32,10 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MAN
 install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion ${CMAKE_BINARY_DIR}/share/zsh
   DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program OPTIONAL)
 if(TARGET pellucid_python)
-  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/pellucid DESTINATION lib/python3/dist-packages COMPONENT python
-    PATTERN __pycache__ EXCLUDE)
+  set(python_folder lib/python3/dist-packages)
+  install(TARGETS pellucid_python LIBRARY DESTINATION ${python_folder}/pellucid COMPONENT python)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/pellucid DESTINATION ${python_folder} COMPONENT python
+    PATTERN __pycache__ EXCLUDE PATTERN "*.so" EXCLUDE)
 endif()
 install(TARGETS ${rooms} EXPORT pellucid-rooms ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT rooms)
 install(DIRECTORY shaders gbuffer engine_bridge composite DESTINATION ${rooms_include} COMPONENT rooms

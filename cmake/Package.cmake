@@ -8,6 +8,7 @@ if(NOT DEFINED ENV{SOURCE_DATE_EPOCH})
 endif()
 string(TIMESTAMP package_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # samples go into no package
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME pellucid)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -20,7 +21,6 @@ set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainer}")
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_COMPONENTS_ALL)
 
 # package(COMPONENT NAME SECTION SUMMARY DESCRIPTION [DEPENDS ...]): one package, and its papers.
@@ -62,9 +62,13 @@ package(program pellucid graphics "composite transparency onto finished renders"
   SHLIBDEPS DEPENDS ${gl})
 package(c libpellucid-c${PROJECT_VERSION_MAJOR} libs "order-independent transparency behind an engine"
   "A C library that draws transparent things in any order in the frame of an\nengine that renders with OpenGL." SHLIBDEPS)
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/papers/shlibs
+  CONTENT "libpellucid_c @PROJECT_VERSION_MAJOR@ libpellucid-c@PROJECT_VERSION_MAJOR@ (>= @PROJECT_VERSION@)\n" @ONLY)
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/papers/triggers CONTENT "activate-noawait ldconfig\n" @ONLY)
+set(CPACK_DEBIAN_C_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/papers/shlibs ${CMAKE_BINARY_DIR}/papers/triggers)
 package(dev libpellucid-c-dev libdevel "order-independent transparency behind an engine (development)"
   "The header, pkg-config and CMake files of the C library." DEPENDS "libpellucid-c${PROJECT_VERSION_MAJOR} ${same}")
-package(rooms libpellucid-rooms-dev libdevel "the compositor of Pellucid as C++ libraries"
+package(rooms libpellucid-rooms-dev libdevel "compositor of Pellucid as C++ libraries"
   "Static libraries, headers, pkg-config and CMake files of the whole\ncompositor and its parts."
   DEPENDS "libpellucid-c-dev ${same}" libdeflate-dev libdraco-dev libegl-dev libembree-dev libepoxy-dev libfmt-dev
     libglm-dev libimath-dev libmeshoptimizer-dev libopencolorio-dev libopenexr-dev libopenimageio-dev libopenvdb-dev
@@ -74,4 +78,9 @@ if(TARGET pellucid_python)
     "The compositor of Pellucid as a Python module: functions of files and of\nNumPy arrays, with every flag of the program as a keyword."
     SHLIBDEPS DEPENDS python3 "python3 (>= 3.11~)" "python3 (<< 3.12)" python3-numpy ${gl})
 endif()
+# Debian has its man pages compressed.
+install(CODE [[
+  file(GLOB pages "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/man/man1/*.1")
+  execute_process(COMMAND gzip -9nf ${pages} COMMAND_ERROR_IS_FATAL ANY)
+]] COMPONENT program)
 include(CPack)

@@ -69,8 +69,9 @@ Camera fittedCamera(const FittedCamera& wanted, const Scene& scene, const Window
   }
   if (!std::isfinite(nearest) || !std::isfinite(farthest))
     throw MeaningError("--camera fit: found no triangle in the scene, expected something to frame");
-  // A scene flat towards the eye still has to lie before it.
-  const double gap = std::max(1e-3, 1e-3 * (farthest - nearest));
+  // What is long and narrow lies inside the cone of its nearest vertex: the eye keeps away from that, by a millimetre
+  // at least.
+  const double gap = std::max(1e-3, kFittedGap * (farthest - nearest));
   const double along = std::min({across.farthestEye(), upwards.farthestEye(), nearest - gap});
   const glm::dvec3 eye = across.eye() * axes.right + upwards.eye() * axes.up + along * axes.forward;
   SceneCamera camera;

@@ -14,5 +14,6 @@ struct FittedCamera {
 // MeaningError for a scene without a triangle.
 Camera fittedCamera(const FittedCamera& wanted, const Scene& scene, const Window& display, double pixelAspect);
 constexpr double kFittedView = 40.0;  // degrees
+constexpr double kFittedGap = 0.05;   // of the scene's depth, that the eye keeps away from the nearest vertex
 
 }  // namespace pellucid

@@ -24,7 +24,9 @@ class Pages : public ::testing::Test {
     ASSERT_EQ(runProgram({folder}, options).code, 0);
     addVerbs(app);
   }
-  bool has(const std::string& tool) { return shell("command -v " + tool, folder).code == 0; }
+  // What a shell says that stands in the folder of the pages.
+  Ended inFolder(const std::string& command) { return shell("cd '" + folder + "' && " + command, folder); }
+  bool has(const std::string& tool) { return inFolder("command -v " + tool).code == 0; }
   std::string folder;
   CLI::App app{"", "pellucid"};
 };
@@ -51,7 +53,7 @@ TEST_F(Pages, ManHasEveryFlagOfEveryVerb) {
 TEST_F(Pages, ManReadsThemWithoutAWarning) {
   if (!has("man")) GTEST_SKIP() << "man is not installed";
   const Ended ended =
-      shell("for page in man/man1/*; do man --warnings -E UTF-8 -l \"$page\" >/dev/null || exit 1; done 2>&1", folder);
+      inFolder("for page in man/man1/*; do man --warnings -E UTF-8 -l \"$page\" >/dev/null || exit 1; done");
   EXPECT_EQ(ended.code, 0);
   EXPECT_EQ(ended.out, "");
 }
@@ -61,9 +63,8 @@ TEST_F(Pages, BashCompletes) {
   std::ofstream(folder + "/shot.exr") << "";
   std::ofstream(folder + "/shot.txt") << "";
   const auto completed = [&](const std::string& words, int at) {
-    return shell("bash -c 'source bash-completion/completions/pellucid; COMP_WORDS=(" + words +
-                     "); COMP_CWORD=" + std::to_string(at) + "; _pellucid; echo \"${COMPREPLY[@]}\"'",
-                 folder)
+    return inFolder("bash -c 'source bash-completion/completions/pellucid; COMP_WORDS=(" + words +
+                    "); COMP_CWORD=" + std::to_string(at) + "; _pellucid; echo \"${COMPREPLY[@]}\"'")
         .out;
   };
   EXPECT_EQ(completed("pellucid comp", 1), "composite compare\n");
@@ -75,7 +76,7 @@ TEST_F(Pages, BashCompletes) {
 
 TEST_F(Pages, ZshReadsIt) {
   if (!has("zsh")) GTEST_SKIP() << "zsh is not installed";
-  const Ended ended = shell("zsh -n zsh/vendor-completions/_pellucid 2>&1", folder);
+  const Ended ended = inFolder("zsh -n zsh/vendor-completions/_pellucid");
   EXPECT_EQ(ended.code, 0);
   EXPECT_EQ(ended.out, "");
   const std::string text = slurp(folder + "/zsh/vendor-completions/_pellucid");
