@@ -1,5 +1,5 @@
 # What goes to an install prefix, by components: `c` the C library, `dev` what hosts of it are built with, `docs`, and,
-# unless PELLUCID_ROOMS is off, `program` and `rooms`, the C++ libraries.
+# unless PELLUCID_ROOMS is off, `program` and `rooms`, the C++ libraries, and `python`, the module.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(rooms pellucid_options pellucid_shaders pellucid_gbuffer pellucid_scene pellucid_gl pellucid_embree
@@ -28,6 +28,15 @@ endif()
 install(TARGETS pellucid RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 install(TARGETS pellucid_images pellucid_grids pellucid_plots
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pellucid COMPONENT program)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program OPTIONAL)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion ${CMAKE_BINARY_DIR}/share/zsh
+  DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program OPTIONAL)
+if(TARGET pellucid_python)
+  set(python_folder lib/python3/dist-packages)
+  install(TARGETS pellucid_python LIBRARY DESTINATION ${python_folder}/pellucid COMPONENT python)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/pellucid DESTINATION ${python_folder} COMPONENT python
+    PATTERN __pycache__ EXCLUDE PATTERN "*.so" EXCLUDE)
+endif()
 install(TARGETS ${rooms} EXPORT pellucid-rooms ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT rooms)
 install(DIRECTORY shaders gbuffer engine_bridge composite DESTINATION ${rooms_include} COMPONENT rooms
   FILES_MATCHING PATTERN "*.h" PATTERN "*.glsl" PATTERN "engine_bridge/c" EXCLUDE PATTERN "engine_bridge/include" EXCLUDE
@@ -35,3 +44,6 @@ install(DIRECTORY shaders gbuffer engine_bridge composite DESTINATION ${rooms_in
 install(EXPORT pellucid-rooms NAMESPACE pellucid:: DESTINATION ${config_folder} COMPONENT rooms)
 configure_file(cmake/pellucid-rooms.pc.in ${CMAKE_BINARY_DIR}/pellucid-rooms.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/pellucid-rooms.pc DESTINATION ${pkgconfig_folder} COMPONENT rooms)
+if(PELLUCID_PACKAGES)
+  include(cmake/Package.cmake)
+endif()

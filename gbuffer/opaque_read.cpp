@@ -11,12 +11,10 @@
 #include "gbuffer/pixel_rows.h"
 #include "gbuffer/producers.h"
 #include "gbuffer/side_files.h"
+#include "gbuffer/unit_normal.h"
 
 namespace pellucid {
 namespace {
-
-// Below this length an averaged normal says nothing about any surface.
-constexpr float kShortestNormal = 0.5f;
 
 const ExrPart& partOf(const OpaqueFile& file, int index) {
   return file.document.parts[static_cast<std::size_t>(index)];
@@ -91,8 +89,7 @@ void readNormals(const PassChannels& pass, bool zUp, OpaqueFile& file) {
   }
   for (std::size_t i = 0; i < gbuffer.normal.size(); ++i) {
     glm::vec3& n = gbuffer.normal[i];
-    const float length = std::sqrt(glm::dot(n, n));
-    n = length >= kShortestNormal && std::isfinite(length) ? n / length : glm::vec3(0.0f);
+    n = unitNormal(n);
     if (zUp) n = glm::vec3(n.x, n.z, -n.y);
   }
   if (zUp) file.notes.push_back(fmt::format("normals {}: turned from Blender's z-up world to y-up", pass.layerName));

@@ -1,8 +1,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
+#include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/compositor.h"
 #include "gbuffer/planes_io.h"
@@ -10,17 +10,9 @@
 namespace pellucid::cli {
 namespace {
 
-struct AccumulateFlags {
-  std::string output;
-  std::vector<std::string> heldOutBy;
-  RenderFlags render;
-  RunFlags run;
-};
-
 void accumulate(const AccumulateFlags& flags) {
   const Threads threads(flags.run.threads);
-  Request request = flags.render.request();
-  request.heldOutBy = flags.heldOutBy;
+  const Request request = flags.request();
   Compositor compositor(request, [](const std::string& note) { say(note); });
   std::vector<PassPlanes> passes;
   const RunCounts counts =
@@ -36,20 +28,30 @@ void accumulate(const AccumulateFlags& flags) {
 
 }  // namespace
 
-void addAccumulate(CLI::App& app) {
-  auto flags = std::make_shared<AccumulateFlags>();
-  CLI::App* verb = app.add_subcommand("accumulate", "The transparent pass alone: sums of the layers, for resolve");
+void AccumulateFlags::addTo(CLI::App& verb) {
   RenderVerb what;
   what.listsToo = false;
   what.resolves = false;
   what.keepsRimsApart = true;
   what.usual = UsualMethod::sums;
-  flags->render.addTo(*verb, what);
-  verb->add_option("--held-out-by", flags->heldOutBy,
-                   "Planes whose solids hide what stands behind them here: so all of them add up in resolve")
+  render.addTo(verb, what);
+  verb.add_option("--held-out-by", heldOutBy,
+                  "Planes whose solids hide what stands behind them here: so all of them add up in resolve")
       ->allow_extra_args(false);
-  verb->add_option("-o,--output", flags->output, "EXR of planes to write")->required();
-  flags->run.addTo(*verb);
+  verb.add_option("-o,--output", output, "EXR of planes to write")->required();
+  run.addTo(verb);
+}
+
+Request AccumulateFlags::request() const {
+  Request request = render.request();
+  request.heldOutBy = heldOutBy;
+  return request;
+}
+
+void addAccumulate(CLI::App& app) {
+  auto flags = std::make_shared<AccumulateFlags>();
+  CLI::App* verb = app.add_subcommand("accumulate", "The transparent pass alone: sums of the layers, for resolve");
+  flags->addTo(*verb);
   verb->callback([flags] { accumulate(*flags); });
 }
 

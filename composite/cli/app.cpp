@@ -21,6 +21,7 @@ void addVerbs(CLI::App& app) {
   addOcclusion(app);
   addInspect(app);
   addGbuffer(app);
+  addRender(app);
   addCompare(app);
   addFlatten(app);
   addFragments(app);
@@ -33,7 +34,7 @@ void addVerbs(CLI::App& app) {
 int run(int argc, const char* const* argv) {
   setUpMessages();
   cleanUpOnSignals();
-  CLI::App app{"Composites glass, smoke and foliage onto renders you already have.", "pellucid"};
+  CLI::App app{kWhatItDoes, "pellucid"};
   addVerbs(app);
   try {
     checkWords(app, argc, argv);

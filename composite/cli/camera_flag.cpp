@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "composite/cli/parse.h"
@@ -16,10 +17,24 @@ glm::dvec3 parsePoint(const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+// "fit" or "fit:AZIMUTH,ELEVATION"
+FittedCamera fitted(const std::string& text) {
+  FittedCamera camera;
+  if (text == "fit") return camera;
+  const auto angles = parseNumbers(text.substr(4), ',', 2, "--camera", "fit:AZIMUTH,ELEVATION in degrees");
+  camera.azimuth = angles[0];
+  camera.elevation = angles[1];
+  if (!(std::abs(camera.elevation) <= 90.0))
+    throw UsageError(
+        fmt::format("--camera: found fit with the elevation {}, expected degrees from -90 to 90", camera.elevation));
+  return camera;
+}
+
 }  // namespace
 
 CameraChoice cameraChoice(const std::string& text) {
   if (text.empty()) return std::monostate();
+  if (text == "fit" || text.rfind("fit:", 0) == 0) return fitted(text);
   if (text.find('=') == std::string::npos) return NamedCamera{text};
   PlacedCamera camera;
   std::istringstream parts(text);

@@ -11,7 +11,7 @@ namespace pellucid::cli {
 // that is none of `views`.
 CameraChoice cameraOfView(const std::vector<std::string>& cameras, const std::string& view,
                           const std::vector<std::string>& views);
-CameraChoice cameraChoice(const std::string& text);              // "", a name or eye=...;look=...; throws UsageError
+CameraChoice cameraChoice(const std::string& text);  // "", a name, eye=...;look=... or fit[:A,E]; throws UsageError
 SurroundingsChoice surroundingsChoice(const std::string& text);  // "", R,G,B or a file; throws UsageError
 
 }  // namespace pellucid::cli

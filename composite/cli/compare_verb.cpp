@@ -4,20 +4,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "composite/cli/messages.h"
+#include "composite/cli/results.h"
+#include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
-#include "composite/compare/compare.h"
 #include "composite/compare/page.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
 namespace {
-
-struct CompareFlags {
-  std::string a, b, html, metadata = "fail";
-  CompareSettings settings;
-  bool json = false;
-};
 
 const char* wordFor(Verdict verdict) {
   return verdict == Verdict::same ? "same" : verdict == Verdict::warned ? "warning" : "failure";
@@ -28,6 +22,19 @@ nlohmann::json number(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
 }
+
+void compareVerb(const CompareFlags& flags) {
+  const ExrDocument a = readExr(flags.a), b = readExr(flags.b);
+  const CompareReport report = compareExr(a, b, flags.settings());
+  if (flags.json)
+    fmt::print("{}\n", jsonOf(report).dump(2));
+  else
+    fmt::print("{}", reportText(report, flags.a, flags.b));
+  if (!flags.html.empty()) writePage(flags.html, comparePage(a, b, report));
+  if (report.verdict == Verdict::failed) throw Error(1, fmt::format("{} and {} differ", flags.a, flags.b));
+}
+
+}  // namespace
 
 nlohmann::json jsonOf(const CompareReport& report) {
   nlohmann::json layers = nlohmann::json::array();
@@ -58,62 +65,56 @@ nlohmann::json jsonOf(const CompareReport& report) {
           {"layers", layers}};
 }
 
-void compareVerb(const CompareFlags& flags) {
-  CompareSettings settings = flags.settings;
-  settings.metadata = flags.metadata == "fail"   ? MetadataRule::fail
-                      : flags.metadata == "warn" ? MetadataRule::warn
-                                                 : MetadataRule::ignore;
-  const ExrDocument a = readExr(flags.a), b = readExr(flags.b);
-  const CompareReport report = compareExr(a, b, settings);
-  if (flags.json)
-    fmt::print("{}\n", jsonOf(report).dump(2));
-  else
-    fmt::print("{}", reportText(report, flags.a, flags.b));
-  if (!flags.html.empty()) writePage(flags.html, comparePage(a, b, report));
-  if (report.verdict == Verdict::failed) throw Error(1, fmt::format("{} and {} differ", flags.a, flags.b));
+void CompareFlags::addTo(CLI::App& verb) {
+  verb.add_option("a", a, "EXR")->required();
+  verb.add_option("b", b, "EXR to hold against it")->required();
+  CompareSettings& settings = thresholds;
+  const auto percent = CLI::Range(0.0, 100.0);
+  verb.add_option("--fail", settings.fail.absolute, "Largest difference of a value")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb.add_option("--failrelative", settings.fail.relative, "The same, times the larger of the two values")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb.add_option("--failpercent", settings.fail.percent, "Pixels of a layer that may exceed it")
+      ->check(percent)
+      ->capture_default_str();
+  verb.add_option("--hardfail", settings.fail.hard, "Difference that fails by itself")->check(CLI::NonNegativeNumber);
+  verb.add_option("--allowfailures", settings.allowedFailures, "Pixels of a layer that may exceed --fail")
+      ->capture_default_str();
+  verb.add_option("--warn", settings.warn.absolute, "As --fail, but only a warning")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb.add_option("--warnrelative", settings.warn.relative, "As --failrelative, but only a warning")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb.add_option("--warnpercent", settings.warn.percent, "As --failpercent, but only a warning")
+      ->check(percent)
+      ->capture_default_str();
+  verb.add_option("--hardwarn", settings.warn.hard, "As --hardfail, but only a warning")->check(CLI::NonNegativeNumber);
+  verb.add_option("--metadata", metadata, "What a differing attribute does")
+      ->check(CLI::IsMember({"fail", "warn", "ignore"}))
+      ->capture_default_str();
+  verb.add_option("--ignore-attribute", settings.ignoredAttributes, "Attributes that may differ")
+      ->allow_extra_args(false);
+  verb.add_option("--layer", settings.layers, "Compare only this layer; may be repeated")->allow_extra_args(false);
+  verb.add_flag("--finite", settings.finiteOnly, "Fail on NaN and infinity even where both files hold the same");
+  verb.add_flag("--json", json, "Print the report as JSON");
+  verb.add_option("--html", html, "Write a self-contained page that shows both pictures and their difference");
 }
 
-}  // namespace
+CompareSettings CompareFlags::settings() const {
+  CompareSettings settings = thresholds;
+  settings.metadata = metadata == "fail"   ? MetadataRule::fail
+                      : metadata == "warn" ? MetadataRule::warn
+                                           : MetadataRule::ignore;
+  return settings;
+}
 
 void addCompare(CLI::App& app) {
   auto flags = std::make_shared<CompareFlags>();
   CLI::App* verb = app.add_subcommand("compare", "A regression gate: exit code 1 when two EXR files differ");
-  verb->add_option("a", flags->a, "EXR")->required();
-  verb->add_option("b", flags->b, "EXR to hold against it")->required();
-  CompareSettings& settings = flags->settings;
-  const auto percent = CLI::Range(0.0, 100.0);
-  verb->add_option("--fail", settings.fail.absolute, "Largest difference of a value")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  verb->add_option("--failrelative", settings.fail.relative, "The same, times the larger of the two values")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  verb->add_option("--failpercent", settings.fail.percent, "Pixels of a layer that may exceed it")
-      ->check(percent)
-      ->capture_default_str();
-  verb->add_option("--hardfail", settings.fail.hard, "Difference that fails by itself")->check(CLI::NonNegativeNumber);
-  verb->add_option("--allowfailures", settings.allowedFailures, "Pixels of a layer that may exceed --fail")
-      ->capture_default_str();
-  verb->add_option("--warn", settings.warn.absolute, "As --fail, but only a warning")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  verb->add_option("--warnrelative", settings.warn.relative, "As --failrelative, but only a warning")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  verb->add_option("--warnpercent", settings.warn.percent, "As --failpercent, but only a warning")
-      ->check(percent)
-      ->capture_default_str();
-  verb->add_option("--hardwarn", settings.warn.hard, "As --hardfail, but only a warning")
-      ->check(CLI::NonNegativeNumber);
-  verb->add_option("--metadata", flags->metadata, "What a differing attribute does")
-      ->check(CLI::IsMember({"fail", "warn", "ignore"}))
-      ->capture_default_str();
-  verb->add_option("--ignore-attribute", settings.ignoredAttributes, "Attributes that may differ")
-      ->allow_extra_args(false);
-  verb->add_option("--layer", settings.layers, "Compare only this layer; may be repeated")->allow_extra_args(false);
-  verb->add_flag("--finite", settings.finiteOnly, "Fail on NaN and infinity even where both files hold the same");
-  verb->add_flag("--json", flags->json, "Print the report as JSON");
-  verb->add_option("--html", flags->html, "Write a self-contained page that shows both pictures and their difference");
+  flags->addTo(*verb);
   verb->callback([flags] { compareVerb(*flags); });
 }
 

@@ -3,9 +3,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "composite/cli/preview_flags.h"
-#include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
+#include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/compositor.h"
 #include "gbuffer/errors.h"
@@ -15,14 +14,6 @@ namespace {
 
 // Of the sample `bottles`, 99.7% of the pixels lie within 0.02 of 64 samples; 16 bring that to 99.9% at twice the time.
 constexpr int kDefaultPasses = 8;
-
-struct CompositeFlags {
-  std::string output;
-  RenderFlags render;
-  PreviewFlags preview;
-  RunFlags run;
-  bool explain = false;
-};
 
 std::vector<std::string> viewsOf(const std::string& path) {
   const ExrDocument document = readExr(path);
@@ -107,18 +98,22 @@ void compositeViews(const CompositeFlags& flags) {
 
 }  // namespace
 
+void CompositeFlags::addTo(CLI::App& verb, bool allViews) {
+  RenderVerb what;
+  what.defaultPasses = kDefaultPasses;
+  what.allViews = allViews;
+  render.addTo(verb, what);
+  verb.add_option("-o,--output", output, "EXR to write")->required();
+  preview.addTo(verb);
+  verb.add_flag("--explain", explain, "Print what would be done and why, and stop before anything is drawn");
+  run.addTo(verb);
+}
+
 void addComposite(CLI::App& app) {
   auto flags = std::make_shared<CompositeFlags>();
   CLI::App* verb = app.add_subcommand(
       "composite", "Composite transparent geometry onto an opaque render: exactly, unless --method says otherwise");
-  RenderVerb what;
-  what.defaultPasses = kDefaultPasses;
-  what.allViews = true;
-  flags->render.addTo(*verb, what);
-  verb->add_option("-o,--output", flags->output, "EXR to write")->required();
-  flags->preview.addTo(*verb);
-  verb->add_flag("--explain", flags->explain, "Print what would be done and why, and stop before anything is drawn");
-  flags->run.addTo(*verb);
+  flags->addTo(*verb);
   verb->callback([flags] { flags->render.read.view == "all" ? compositeViews(*flags) : composite(*flags); });
 }
 

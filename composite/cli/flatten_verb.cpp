@@ -6,22 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/budget.h"
-#include "composite/cli/colour_flags.h"
-#include "composite/cli/preview_flags.h"
 #include "composite/cli/results.h"
+#include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
-#include "composite/deep/flatten.h"
 
 namespace pellucid::cli {
 namespace {
-
-struct FlattenFlags {
-  std::vector<std::string> files;
-  std::string output, view, budget = "16M", type = "float";
-  RunFlags run;
-  ColourFlags colour;
-  PreviewFlags preview;
-};
 
 // Over black, as the file says its colours.
 void writePreview(const FlattenFlags& flags, const FlatPicture& flat) {
@@ -57,20 +47,8 @@ ExtraLayer layersOf(const FlatPicture& flat) {
 
 void flattenVerb(const FlattenFlags& flags) {
   const Threads threads(flags.run.threads);
-  flags.preview.check(flags.colour.request(), true);
   Stages stages;
-  // A sample takes its channels as floats: seven at most, and its share of the pointers.
-  const std::uint64_t most = parseBudget(flags.budget) / 32;
-  const FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most, flags.view); });
-  say(flat.notes);
-  if (flat.oddities.notFinite) note("{} deep samples are not numbers and were skipped", flat.oddities.notFinite);
-  if (flat.oddities.outOfRange)
-    note("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
-  stages.time("write", [&] {
-    say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half",
-                    &flat.like));
-  });
-  writePreview(flags, flat);
+  const FlatPicture flat = flattenFiles(flags, stages);
   nlohmann::json report{{"output", flags.output}, {"samples", flat.samples}};
   RunCounts counts;
   counts.fragments = flat.samples;
@@ -79,20 +57,42 @@ void flattenVerb(const FlattenFlags& flags) {
 
 }  // namespace
 
+FlatPicture flattenFiles(const FlattenFlags& flags, Stages& stages) {
+  flags.preview.check(flags.colour.request(), true);
+  // A sample takes its channels as floats: seven at most, and its share of the pointers.
+  const std::uint64_t most = parseBudget(flags.budget) / 32;
+  FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most, flags.view); });
+  say(flat.notes);
+  if (flat.oddities.notFinite) note("{} deep samples are not numbers and were skipped", flat.oddities.notFinite);
+  if (flat.oddities.outOfRange)
+    note("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
+  if (!flags.output.empty())
+    stages.time("write", [&] {
+      say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half",
+                      &flat.like));
+    });
+  writePreview(flags, flat);
+  return flat;
+}
+
+void FlattenFlags::addTo(CLI::App& verb) {
+  verb.add_option("files", files, "Deep EXR files, in any order")->required();
+  verb.add_option("-o,--output", output, "Flat EXR to write")->required();
+  verb.add_option("--view", view, "View of stereo files, such as left; without it the first deep part");
+  verb.add_option("--budget", budget, "Deep samples held at once, in bytes (64M, 2G; at least 1M)")
+      ->capture_default_str();
+  verb.add_option("--type", type, "Of the flat channels")
+      ->check(CLI::IsMember({"float", "half"}))
+      ->capture_default_str();
+  preview.addTo(verb);
+  colour.addConfigTo(verb);
+  run.addTo(verb);
+}
+
 void addFlatten(CLI::App& app) {
   auto flags = std::make_shared<FlattenFlags>();
   CLI::App* verb = app.add_subcommand("flatten", "Merge deep EXR files and composite their samples, exactly");
-  verb->add_option("files", flags->files, "Deep EXR files, in any order")->required();
-  verb->add_option("-o,--output", flags->output, "Flat EXR to write")->required();
-  verb->add_option("--view", flags->view, "View of stereo files, such as left; without it the first deep part");
-  verb->add_option("--budget", flags->budget, "Deep samples held at once, in bytes (64M, 2G; at least 1M)")
-      ->capture_default_str();
-  verb->add_option("--type", flags->type, "Of the flat channels")
-      ->check(CLI::IsMember({"float", "half"}))
-      ->capture_default_str();
-  flags->preview.addTo(*verb);
-  flags->colour.addConfigTo(*verb);
-  flags->run.addTo(*verb);
+  flags->addTo(*verb);
   verb->callback([flags] { flattenVerb(*flags); });
 }
 

@@ -27,6 +27,24 @@ struct GbufferFlags {
   RunFlags run;
 };
 
+// The opaque part of a scene, rendered.
+struct RenderedPart {
+  OpaquePlanes planes;
+  Camera camera;
+  ColourSpace space;
+  Window window;
+  std::ptrdiff_t opaqueInstances = 0;
+  std::size_t triangles = 0;
+  std::size_t lights = 0;  // that shine
+  std::string device = "Embree";
+};
+
+// Reads the scenes and renders what is opaque in them, saying what was inferred. Throws UsageError for flags that do
+// not go together, and what readers throw.
+//   fits  where nobody names a camera and the scenes have none, one is made that frames them
+RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages);
+void writePart(const std::string& path, const RenderedPart& part, const std::string& renderer);  // and says the notes
+
 Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
 
 // Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.

@@ -28,48 +28,57 @@ ColourSpace spaceToRender(const GbufferFlags& flags) {
 void gbuffer(const GbufferFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  const Window window = parseSize(flags.size);
+  const RenderedPart part = renderPart(flags, false, stages);
+  stages.time("write", [&] { writePart(flags.output, part, flags.renderer); });
+  nlohmann::json report{
+      {"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", part.opaqueInstances}};
+  reportSpace(part.space, report);
+  flags.preview.write(flags.colour.request(), part.space, part.planes.beauty);
+  RunCounts counts;
+  counts.triangles = part.triangles;
+  reportRun(flags.run, stages, counts, part.device, report);
+}
+
+}  // namespace
+
+RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages) {
+  RenderedPart part;
+  part.window = parseSize(flags.size);
   SceneOptions options;
   options.metresPerUnit = flags.unit;
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
-  const ColourSpace space = spaceToRender(flags);
+  part.space = spaceToRender(flags);
   flags.preview.check(flags.colour.request());
   Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
   say(scene.notes);
-  say(bringInto(scene, space.fromRec709));
+  say(bringInto(scene, part.space.fromRec709));
   GBuffer frame;
-  frame.display = frame.data = window;
-  const Camera camera = chooseCamera(cameraChoice(flags.camera), frame, scene, flags.scenes.front());
-  note("camera: {}", camera.origin);
-  const auto opaque = std::count_if(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+  frame.display = frame.data = part.window;
+  const bool fitted = fits && flags.camera.empty() && scene.cameras.empty();
+  part.camera = chooseCamera(fitted ? FittedCamera() : cameraChoice(flags.camera), frame, scene, flags.scenes.front());
+  note("camera: {}", part.camera.origin);
+  part.opaqueInstances = std::count_if(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
     return !scene.materials[static_cast<std::size_t>(primitive.material)].transparent();
   });
-  if (opaque == 0) note("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
-
-  std::string device = "Embree";
-  const OpaquePlanes planes = flags.renderer == "gl" ? rasterise(flags, scene, camera, window, stages, device)
-                                                     : trace(flags, scene, camera, window, space, stages);
-  if (flags.renderer == "gl" && !planes.lights.empty()) say("lights without shadows: --renderer embree traces them");
-  const std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
-  say(stages.time("write", [&] {
-    return writeLayers(flags.output, window, window, layersOf(planes), attributes, &camera, false, nullptr,
-                       chromaticitiesToWrite(space));
-  }));
-  nlohmann::json report{{"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", opaque}};
-  reportSpace(space, report);
-  flags.preview.write(flags.colour.request(), space, planes.beauty);
-  std::size_t triangles = 0;
+  if (part.opaqueInstances == 0)
+    note("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
+  part.planes = flags.renderer == "gl" ? rasterise(flags, scene, part.camera, part.window, stages, part.device)
+                                       : trace(flags, scene, part.camera, part.window, part.space, stages);
+  if (flags.renderer == "gl" && !part.planes.lights.empty())
+    say("lights without shadows: --renderer embree traces them");
+  part.lights = part.planes.lights.size();
   for (const Instance& instance : scene.instances)
-    triangles += scene.primitives[static_cast<std::size_t>(instance.primitive)].indices.size() / 3;
-  RunCounts counts;
-  counts.triangles = triangles;
-  reportRun(flags.run, stages, counts, device, report);
+    part.triangles += scene.primitives[static_cast<std::size_t>(instance.primitive)].indices.size() / 3;
+  return part;
 }
 
-}  // namespace
+void writePart(const std::string& path, const RenderedPart& part, const std::string& renderer) {
+  say(writeLayers(path, part.window, part.window, layersOf(part.planes), {{"pellucid:renderer", renderer}},
+                  &part.camera, false, nullptr, chromaticitiesToWrite(part.space)));
+}
 
 void addGbuffer(CLI::App& app) {
   auto flags = std::make_shared<GbufferFlags>();
@@ -83,8 +92,10 @@ void addGbuffer(CLI::App& app) {
       ->check(CLI::IsMember({"embree", "gl"}))
       ->capture_default_str();
   verb->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->required();
-  verb->add_option("--camera", flags->camera,
-                   "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
+  verb->add_option(
+      "--camera", flags->camera,
+      "glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical), or fit[:AZIMUTH,ELEVATION], "
+      "which frames the scene from there (30,20)");
   verb->add_option("--samples", flags->samples, "Colour samples per pixel, box filter; embree 16, gl 1")
       ->check(CLI::Range(1, kMostSamples));
   verb->add_option("--environment", flags->environment,

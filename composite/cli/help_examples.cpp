@@ -13,6 +13,7 @@ constexpr Example kExamples[] = {
     {"occlusion", "pellucid occlusion shot.exr foliage.exr -o darkened.exr --radius 0.5"},
     {"inspect", "pellucid inspect shot.exr"},
     {"gbuffer", "pellucid gbuffer scene.glb -o shot.exr --size 1920x1080 --samples 64"},
+    {"render", "pellucid render scene.glb -o out.exr --preview out.png"},
     {"compare", "pellucid compare expected.exr found.exr --fail 0.004 --html report.html"},
     {"flatten", "pellucid flatten smoke.exr sparks.exr -o flat.exr"},
     {"fragments", "pellucid fragments shot.exr bottles.glb -o deep.exr"},

@@ -11,8 +11,16 @@ namespace {
 
 constexpr std::size_t kFewChoices = 28;  // characters of choices that stand beside the flag
 
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+}  // namespace
+
 // Of "TEXT:{a,b}" the choices, "a|b"; "" where it has none.
-std::string choicesOf(const CLI::Option& option, const char* separator) {
+std::string choicesText(const CLI::Option& option, const char* separator) {
   const std::string type = option.get_type_name();
   const auto open = type.find('{'), close = type.rfind('}');
   if (open == std::string::npos || close == std::string::npos) return "";
@@ -22,26 +30,20 @@ std::string choicesOf(const CLI::Option& option, const char* separator) {
 }
 
 // "-o, --output FILE", or with the first of its names alone
-std::string nameOf(const CLI::Option& option, bool first = false) {
+std::string flagText(const CLI::Option& option, bool first) {
   std::string names;
   for (const std::string& name : option.get_snames()) names += (names.empty() ? "-" : ", -") + name;
   for (const std::string& name : option.get_lnames()) names += (names.empty() ? "--" : ", --") + name;
   if (first) names = names.substr(0, names.find(','));
   if (option.get_items_expected_max() == 0) return names;
   const HelpRow* row = option.get_lnames().empty() ? nullptr : helpRow("--" + option.get_lnames()[0]);
-  const std::string choices = choicesOf(option, "|");
+  const std::string choices = choicesText(option, "|");
   if (!choices.empty() && choices.size() <= kFewChoices) return names + " " + choices;
   return names + " " + (row && *row->value ? row->value : "VALUE");
 }
 
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
 // A capital and a full stop. A name such as "exact:" keeps its letter.
-std::string sentence(std::string text) {
+std::string helpSentence(std::string text) {
   if (text.empty()) return text;
   const auto word = text.substr(0, text.find_first_of(" :,;"));
   const bool isName = word.find_first_not_of("abcdefghijklmnopqrstuvwxyz") != std::string::npos ||
@@ -52,30 +54,37 @@ std::string sentence(std::string text) {
 }
 
 // "SCENES..." of a positional
-std::string placeOf(const CLI::Option& option) {
+std::string placeText(const CLI::Option& option) {
   const std::string name = upper(option.get_name(true, false));
   const std::string several = option.get_items_expected_max() >= CLI::detail::expected_max_vector_size ? "..." : "";
   return option.get_required() ? name + several : "[" + name + several + "]";
 }
 
-std::string helpOfVerb(const CLI::App& verb) {
-  std::string usage = "pellucid " + verb.get_name(), files, flags;
+std::string usageText(const CLI::App& verb) {
+  std::string usage = "pellucid " + verb.get_name();
   for (const CLI::Option* option : verb.get_options())
-    if (option->get_positional()) {
-      usage += " " + placeOf(*option);
-      files += helpRowText(placeOf(*option), helpSentences(*option));
-    } else if (option->get_required()) {
-      usage += " " + nameOf(*option, true);
-    }
+    if (option->get_positional())
+      usage += " " + placeText(*option);
+    else if (option->get_required())
+      usage += " " + flagText(*option, true);
+  return usage;
+}
+
+namespace {
+
+std::string helpOfVerb(const CLI::App& verb) {
+  std::string files, flags;
+  for (const CLI::Option* option : verb.get_options())
+    if (option->get_positional()) files += helpRowText(placeText(*option), helpSentences(*option));
   const auto lists = [&](const std::string& heading, auto&& belongs) {
     std::string rows;
     for (const CLI::Option* option : verb.get_options())
-      if (option->nonpositional() && belongs(*option)) rows += helpRowText(nameOf(*option), helpSentences(*option));
+      if (option->nonpositional() && belongs(*option)) rows += helpRowText(flagText(*option), helpSentences(*option));
     if (!rows.empty()) flags += "\n" + heading + "\n" + rows;
   };
   for (const std::string& group : helpGroups())
     lists(group, [&](const CLI::Option& option) { return option.get_group() == group; });
-  std::string help = wrapped(sentence(verb.get_description()), 0, 0) + "\n\n  " + usage + " [FLAGS]\n";
+  std::string help = wrapped(helpSentence(verb.get_description()), 0, 0) + "\n\n  " + usageText(verb) + " [FLAGS]\n";
   if (const std::string example = exampleOf(verb.get_name()); !example.empty())
     help += "\nFor example\n  " + example + "\n";
   if (!files.empty()) help += "\nFiles\n" + files;
@@ -85,9 +94,9 @@ std::string helpOfVerb(const CLI::App& verb) {
 std::string helpOfProgram(const CLI::App& app) {
   std::string help = app.get_description() + "\n\n  pellucid VERB FILES... [FLAGS]\n\nVerbs\n";
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
-    help += helpRowText(verb->get_name(), sentence(verb->get_description()));
+    help += helpRowText(verb->get_name(), helpSentence(verb->get_description()));
   help += "\nFor example\n  " + exampleOf("composite") + "\n\nFlags\n";
-  for (const CLI::Option* option : app.get_options()) help += helpRowText(nameOf(*option), helpSentences(*option));
+  for (const CLI::Option* option : app.get_options()) help += helpRowText(flagText(*option), helpSentences(*option));
   return help + "\n" +
          wrapped("pellucid VERB --help lists the flags of a verb, pellucid help TOPIC what some of them take: " +
                      helpTopics() + ".",
@@ -102,8 +111,8 @@ std::string HelpText::make_help(const CLI::App* app, std::string, CLI::AppFormat
 }
 
 std::string helpSentences(const CLI::Option& option) {
-  std::string text = sentence(option.get_description());
-  const std::string choices = choicesOf(option, ", ");
+  std::string text = helpSentence(option.get_description());
+  const std::string choices = choicesText(option, ", ");
   if (choices.size() > kFewChoices) text += " One of " + choices + ".";
   if (const std::string type = option.get_type_name(); type.find(" in [") != std::string::npos) {
     std::string range = type.substr(type.find(" in [") + 5);

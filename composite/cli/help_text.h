@@ -13,6 +13,13 @@ class HelpText : public CLI::FormatterBase {
 // The text of one flag: what it does, the values it takes, its default. Whole sentences.
 std::string helpSentences(const CLI::Option& option);
 
+// Parts of it, for pages that are made of the same flags.
+std::string helpSentence(std::string text);                                  // a capital and a full stop
+std::string flagText(const CLI::Option& option, bool first = false);        // "-o, --output FILE", or its first name
+std::string placeText(const CLI::Option& option);                           // "SCENES..." of a positional
+std::string usageText(const CLI::App& verb);                                // "pellucid flatten FILES... -o FILE"
+std::string choicesText(const CLI::Option& option, const char* separator);  // "a|b"; "" for what has no choices
+
 // A name, and beside it in a column of its own what is said of it.
 std::string helpRowText(const std::string& name, const std::string& text);
 

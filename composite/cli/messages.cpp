@@ -4,6 +4,19 @@
 #include <spdlog/spdlog.h>
 
 namespace pellucid::cli {
+namespace {
+
+thread_local std::vector<std::string>* heard = nullptr;  // by the Listener of this thread, or null
+
+}  // namespace
+
+Listener::Listener(std::vector<std::string>& notes) : before_(heard) {
+  heard = &notes;
+}
+
+Listener::~Listener() {
+  heard = before_;
+}
 
 void setUpMessages() {
   if (!spdlog::get("pellucid")) spdlog::set_default_logger(spdlog::stderr_logger_mt("pellucid"));
@@ -11,7 +24,10 @@ void setUpMessages() {
 }
 
 void say(const std::string& note) {
-  spdlog::info("{}", note);
+  if (heard)
+    heard->push_back(note);
+  else
+    spdlog::info("{}", note);
 }
 
 void say(const std::vector<std::string>& notes) {

@@ -31,10 +31,10 @@ SubmissionOrder parseOrder(const std::string& text) {
 }  // namespace
 
 void SceneFlags::addTo(CLI::App& verb) {
-  verb.add_option(
-          "--camera", cameras,
-          "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical); VIEW=CAMERA is that of "
-          "one view")
+  verb.add_option("--camera", cameras,
+                  "glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical), or "
+                  "fit[:AZIMUTH,ELEVATION], which "
+                  "frames the scene from there (30,20); VIEW=CAMERA is that of one view")
       ->allow_extra_args(false);
   verb.add_option("--environment", environment,
                   "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");

@@ -1,49 +1,20 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "composite/cli/colour_flags.h"
-#include "composite/cli/foliage_flags.h"
-#include "composite/cli/preview_flags.h"
-#include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
+#include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/output_layers.h"
-#include "composite/pipeline/resolve_planes.h"
 
 namespace pellucid::cli {
 namespace {
-
-struct ResolveFlags {
-  std::string opaque, output;
-  std::vector<std::string> planes, layers;
-  ReadFlags read;
-  RunFlags run;
-  LookupFlags lookup;
-  SelfModulationFlag selfModulation;
-  RimFlags rims;
-  ColourFlags colour;
-  PreviewFlags preview;
-};
-
-PlanesRequest requestOf(const ResolveFlags& flags) {
-  PlanesRequest request;
-  request.opaque = flags.opaque;
-  request.read = flags.read.options();
-  request.planes = flags.planes;
-  request.selfModulation = flags.selfModulation.value();
-  request.lookup = flags.lookup.settings();
-  request.onDevice = flags.lookup.onDevice();
-  request.rims = flags.rims.request();
-  request.layers = layerNames(flags.layers);
-  return request;
-}
 
 void resolveVerb(const ResolveFlags& flags) {
   const Threads threads(flags.run.threads);
   const ColourRequest colour = flags.colour.request();
   flags.preview.check(colour, true);
   Journal notes = journal();
-  const ResolvedPlanes result = resolvePlanes(requestOf(flags), notes);
+  const ResolvedPlanes result = resolvePlanes(flags.request(), notes);
   say(notes.time("write", [&] {
     return writeOver(flags.output, result.opaque, &result.camera, result.picture, result.layers,
                      {{"pellucid:method", result.info.method}});
@@ -56,21 +27,38 @@ void resolveVerb(const ResolveFlags& flags) {
 
 }  // namespace
 
+void ResolveFlags::addTo(CLI::App& verb) {
+  verb.add_option("opaque", opaque, "EXR with beauty and depth")->required();
+  verb.add_option("planes", planes, "EXR of planes; several are added")->required();
+  verb.add_option("-o,--output", output, "EXR to write")->required();
+  read.addTo(verb);
+  run.addTo(verb);
+  lookup.addTo(verb);
+  selfModulation.addTo(verb);
+  lookup.addResolverTo(verb);
+  rims.addTo(verb);
+  addLayersOption(verb, layers);
+  preview.addTo(verb);
+  colour.addConfigTo(verb);
+}
+
+PlanesRequest ResolveFlags::request() const {
+  PlanesRequest request;
+  request.opaque = opaque;
+  request.read = read.options();
+  request.planes = planes;
+  request.selfModulation = selfModulation.value();
+  request.lookup = lookup.settings();
+  request.onDevice = lookup.onDevice();
+  request.rims = rims.request();
+  request.layers = layerNames(layers);
+  return request;
+}
+
 void addResolve(CLI::App& app) {
   auto flags = std::make_shared<ResolveFlags>();
   CLI::App* verb = app.add_subcommand("resolve", "The compositing step alone: planes over an opaque render");
-  verb->add_option("opaque", flags->opaque, "EXR with beauty and depth")->required();
-  verb->add_option("planes", flags->planes, "EXR of planes; several are added")->required();
-  verb->add_option("-o,--output", flags->output, "EXR to write")->required();
-  flags->read.addTo(*verb);
-  flags->run.addTo(*verb);
-  flags->lookup.addTo(*verb);
-  flags->selfModulation.addTo(*verb);
-  flags->lookup.addResolverTo(*verb);
-  flags->rims.addTo(*verb);
-  addLayersOption(*verb, flags->layers);
-  flags->preview.addTo(*verb);
-  flags->colour.addConfigTo(*verb);
+  flags->addTo(*verb);
   verb->callback([flags] { resolveVerb(*flags); });
 }
 

@@ -47,27 +47,51 @@ std::string toleranceLine(double tolerance, const ToleranceCounts& counts) {
 
 }  // namespace
 
-void reportError(const RunFlags& flags, const Result& result, nlohmann::json& report) {
+nlohmann::json errorsOf(const Result& result) {
+  nlohmann::json found = nlohmann::json::object();
   if (const auto* within = result.plan.as<PaintWithin>()) {
     const ToleranceCounts& counts = result.counts.tolerance;
-    report["tolerance"] = {{"E", within->tolerance},
-                           {"certified", counts.certified},
-                           {"recomputed", counts.recomputed},
-                           {"bound", counts.bound}};
-    if (counts.measured) report["tolerance"]["measured"] = *counts.measured;
-    if (!flags.json) fmt::print("{}\n", toleranceLine(within->tolerance, counts));
+    found["tolerance"] = {{"E", within->tolerance},
+                          {"certified", counts.certified},
+                          {"recomputed", counts.recomputed},
+                          {"bound", counts.bound}};
+    if (counts.measured) found["tolerance"]["measured"] = *counts.measured;
   }
-  if (!result.error) return;
+  if (!result.error) return found;
   const ErrorStatistics& error = *result.error;
   const Window& data = result.dataWindow;
-  report["error"] = {{"mean", error.mean},
-                     {"rmse", error.rmse},
-                     {"p99", error.p99},
-                     {"max", error.maximum},
-                     {"worst", {error.worstX + data.x0, error.worstY + data.y0}},
-                     {"pixels", error.pixels},
-                     {"notFinite", error.nonFinite}};
-  if (!flags.json) fmt::print("error of {} against sorted over: {}\n", result.plan.method, errorLine(error));
+  found["error"] = {{"mean", error.mean},
+                    {"rmse", error.rmse},
+                    {"p99", error.p99},
+                    {"max", error.maximum},
+                    {"worst", {error.worstX + data.x0, error.worstY + data.y0}},
+                    {"pixels", error.pixels},
+                    {"notFinite", error.nonFinite}};
+  return found;
+}
+
+nlohmann::json statisticsOf(const Stages& stages, const RunCounts& counts, const std::string& device) {
+  nlohmann::json seconds = nlohmann::json::object();
+  for (const auto& [name, value] : stages.seconds()) seconds[name] = value;
+  nlohmann::json statistics{{"device", device},      {"triangles", counts.triangles}, {"chunks", counts.chunks},
+                            {"tiles", counts.tiles}, {"fragments", counts.fragments}, {"seconds", seconds}};
+  statistics["bitsPerPixel"] = counts.bitsPerPixel;
+  statistics["solidBitsPerPixel"] = counts.solidBits;
+  statistics["clamped"] = {{"written", counts.clamps.written},
+                           {"radiance", counts.clamps.radiance},
+                           {"diffusion", counts.clamps.diffusion},
+                           {"refraction", counts.clamps.refraction}};
+  statistics["passes"] = counts.passes;
+  statistics["pruned"] = counts.pruned;
+  return statistics;
+}
+
+void reportError(const RunFlags& flags, const Result& result, nlohmann::json& report) {
+  report.update(errorsOf(result));
+  if (flags.json) return;
+  if (const auto* within = result.plan.as<PaintWithin>())
+    fmt::print("{}\n", toleranceLine(within->tolerance, result.counts.tolerance));
+  if (result.error) fmt::print("error of {} against sorted over: {}\n", result.plan.method, errorLine(*result.error));
 }
 
 void reportRun(const RunFlags& flags, const Stages& stages, const RunCounts& counts, const std::string& device,
@@ -78,18 +102,7 @@ void reportRun(const RunFlags& flags, const Stages& stages, const RunCounts& cou
   if (counts.clamps.total())
     say(fmt::format("published tier: clamped to what its targets hold: {}", clampText(counts.clamps)));
   if (flags.stats) {
-    nlohmann::json seconds = nlohmann::json::object();
-    for (const auto& [name, value] : stages.seconds()) seconds[name] = value;
-    report["statistics"] = {{"device", device},      {"triangles", counts.triangles}, {"chunks", counts.chunks},
-                            {"tiles", counts.tiles}, {"fragments", counts.fragments}, {"seconds", seconds}};
-    report["statistics"]["bitsPerPixel"] = counts.bitsPerPixel;
-    report["statistics"]["solidBitsPerPixel"] = counts.solidBits;
-    report["statistics"]["clamped"] = {{"written", counts.clamps.written},
-                                       {"radiance", counts.clamps.radiance},
-                                       {"diffusion", counts.clamps.diffusion},
-                                       {"refraction", counts.clamps.refraction}};
-    report["statistics"]["passes"] = counts.passes;
-    report["statistics"]["pruned"] = counts.pruned;
+    report["statistics"] = statisticsOf(stages, counts, device);
     if (!flags.json) {
       fmt::print("device      {}\ntriangles   {}\nchunks      {}\ntiles       {}\nfragments   {}\n", device,
                  counts.triangles, counts.chunks, counts.tiles, counts.fragments);

@@ -8,6 +8,7 @@
 
 #include "composite/cli/messages.h"
 #include "composite/cli/options.h"
+#include "composite/compare/compare.h"
 #include "composite/pipeline/result.h"
 
 namespace pellucid::cli {
@@ -22,6 +23,12 @@ class Threads {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// The same as data: what --tolerance and --measure found, each under its name where it was asked for.
+nlohmann::json errorsOf(const Result& result);
+// Counts, seconds and planes of a run, as --json puts them under `statistics`.
+nlohmann::json statisticsOf(const Stages& stages, const RunCounts& counts, const std::string& device);
+nlohmann::json jsonOf(const CompareReport& report);  // of `compare`
 
 // Prints what --tolerance and --measure found, or puts it into the report.
 void reportError(const RunFlags& flags, const Result& result, nlohmann::json& report);

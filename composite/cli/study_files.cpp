@@ -1,5 +1,8 @@
 #include "composite/cli/study_files.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -45,6 +48,12 @@ nlohmann::json jsonOf(const std::vector<StudyRow>& rows) {
                     {"paretoFront", row.front}});
   }
   return list;
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw ResourceError(fmt::format("{}: cannot be made: {}", folder, error.message()));
 }
 
 void writeStudy(const std::string& folder, const std::string& opaque, const StudyOutcome& outcome) {

@@ -35,7 +35,9 @@ std::string fileOf(const std::string& flag, const std::string& text) {
   return side ? side->path : text;
 }
 
-void check(const CLI::App& verb) {
+}  // namespace
+
+void checkVerbOutputs(const CLI::App& verb) {
   std::vector<Output> outputs;
   for (const OutputFlag& row : kOutputs) {
     const CLI::Option* option = *row.verb ? nullptr : verb.get_option_no_throw(row.flag);
@@ -54,11 +56,9 @@ void check(const CLI::App& verb) {
   checkOutputs(outputs, inputs);
 }
 
-}  // namespace
-
 void checkOutputsFirst(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
-    verb->parse_complete_callback([verb] { check(*verb); });
+    verb->parse_complete_callback([verb] { checkVerbOutputs(*verb); });
 }
 
 }  // namespace pellucid::cli

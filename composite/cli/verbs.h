@@ -10,6 +10,7 @@ void addResolve(CLI::App& app);
 void addOcclusion(CLI::App& app);
 void addInspect(CLI::App& app);
 void addGbuffer(CLI::App& app);
+void addRender(CLI::App& app);
 void addCompare(CLI::App& app);
 void addFlatten(CLI::App& app);
 void addFragments(CLI::App& app);

@@ -10,6 +10,7 @@
 #include "composite/pipeline/fit.h"
 #include "composite/pipeline/foliage_step.h"
 #include "composite/pipeline/held_out_planes.h"
+#include "composite/pipeline/memory_picture.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/pass_picture.h"
@@ -90,7 +91,12 @@ Compositor::Compositor(const Request& request, std::function<void(const std::str
   facts_ = factsOf(*shot_);
 }
 
-Compositor::~Compositor() = default;
+Compositor::~Compositor() {
+  const Device::Turn turn(device_);
+  triangles_.reset();
+  lighting_.reset();
+  device_.close();
+}
 
 Plan Compositor::plan(const Request& request) const {
   validate(request);
@@ -188,6 +194,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& ru
 }
 
 Result Compositor::run(const Request& request) {
+  const Device::Turn turn(device_);
   const Run run = prepare(request);
   Result result;
   result.plan = run.plan;
@@ -225,12 +232,14 @@ Result Compositor::run(const Request& request) {
 }
 
 shading::WeightSettings Compositor::fitWeight(Request request) {
+  const Device::Turn turn(device_);
   request.sums.fitWeight = true;
   return prepare(request).plan.pass.weight;
 }
 
 RunCounts Compositor::accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each) {
   if (shot_->deepOpaque) expectPlacesHold(request);
+  const Device::Turn turn(device_);
   const Run run = prepare(request);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
   const OtherSolids others(request.heldOutBy, gbuffer, shot_->opaque.space, run.plan.passes);
@@ -286,6 +295,7 @@ PassPlanes Compositor::passPlanes(const Plan& sums, const PassSettings& sample, 
 }
 
 RunCounts Compositor::listFragments(const Request& request, const ListSink& sink) {
+  const Device::Turn turn(device_);
   const Run run = prepare(request);
   RunCounts counts;
   journal_.time("lists and write", [&] {
@@ -308,6 +318,9 @@ std::map<std::string, std::string> Compositor::attributes(const Result& result) 
 }
 
 std::vector<std::string> Compositor::write(const std::string& path, const Result& result) const {
+  if (shot_->lender)
+    return writeFromMemory(path, shot_->opaque, shot_->hasCamera ? &shot_->camera : nullptr, result.picture.rgba,
+                           result.layers, attributes(result));
   return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,
                    attributes(result));
 }

@@ -18,7 +18,7 @@
 
 namespace pellucid {
 
-// Not for several threads at once: it holds a GL context, which is current on the thread that first used it.
+// Not for several threads at once; one after the other may use it. Its GL context is current only while it works.
 class Compositor {
  public:
   // Validates the request before any file is opened, and loads its shot. Throws UsageError, InputError, MeaningError
@@ -34,6 +34,7 @@ class Compositor {
 
   // Works out the light of a request, which run() does where nobody has: shadows, fog, the light in particles.
   void light(const Request& request) {
+    const Device::Turn turn(device_);
     lightOf(request);
     journal_.stages = Stages();
   }

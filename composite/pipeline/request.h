@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "composite/methods/method.h"
 #include "composite/methods/stochastic.h"
 #include "composite/pipeline/default_method.h"
+#include "engine_bridge/scene/fitted_camera.h"
 #include "engine_bridge/scene/gltf.h"
 #include "engine_bridge/scene/pass_settings.h"
 #include "gbuffer/medium.h"
@@ -61,8 +63,8 @@ struct PlacedCamera {
   glm::dvec3 eye{0.0}, look{0.0, 0.0, -1.0}, up{0.0, 1.0, 0.0};  // world, metres
   double fov = 0.0;                                              // vertical, degrees
 };
-// Nothing: the picture's own, else the scene's only one.
-using CameraChoice = std::variant<std::monostate, NamedCamera, PlacedCamera>;
+// Nothing: the picture's own, else the scene's only one. A Camera is taken as it is.
+using CameraChoice = std::variant<std::monostate, NamedCamera, PlacedCamera, FittedCamera, Camera>;
 
 struct PictureOfSurroundings {
   std::string path;  // lat-long EXR
@@ -77,8 +79,12 @@ struct ColourRequest {
   std::string workingSpace = "auto";
 };
 
+class MemoryPicture;  // memory_picture.h
+
 struct ShotRequest {
-  std::string opaque;               // EXR, flat or deep
+  std::string opaque;  // EXR, flat or deep
+  // The opaque picture as the caller holds it, instead of that file; null: the file.
+  std::shared_ptr<MemoryPicture> memory;
   std::vector<std::string> inputs;  // glTF, GLB and deep EXR with the transparent things
   ReadOptions read;
   SceneOptions scene;

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "composite/pipeline/colour_step.h"
+#include "composite/pipeline/memory_picture.h"
 #include "composite/pipeline/same_cameras.h"
 #include "engine_bridge/embree/environment.h"
 #include "engine_bridge/scene/working_space.h"
@@ -26,6 +27,10 @@ Camera placedCamera(const PlacedCamera& placed, const GBuffer& gbuffer) {
   result.origin = "--camera";
   return result;
 }
+
+// Where neither file has a camera, as one would type it.
+constexpr const char* kCameraExamples =
+    "such as --camera 'eye=0,1,5;look=0,0,0;fov=40', or --camera fit, which frames the scene";
 
 std::string namesOf(const std::vector<SceneCamera>& cameras) {
   std::string names;
@@ -95,13 +100,24 @@ OpaqueFile interpretPicture(ExrDocument document, const ReadOptions& options, co
                           : interpretOpaque(std::move(document), options, camera);
 }
 
+bool isChosen(const CameraChoice& camera) {
+  return !std::holds_alternative<std::monostate>(camera);
+}
+
 // The camera is chosen before depth is converted, which may take it.
 void readPicture(const ShotRequest& request, Shot& shot) {
+  if (request.memory) {
+    shot.lender = request.memory;
+    readMemoryPicture(*shot.lender, shot.opaque);
+    shot.hasCamera = shot.hasScene || shot.opaque.gbuffer.camera || isChosen(request.camera);
+    if (shot.hasCamera) shot.camera = chooseCamera(request.camera, shot.opaque.gbuffer, shot.scene, kMemoryPicture);
+    return;
+  }
   ReadOptions framing = request.read;
   framing.framingAlone = true;
   OpaqueFile first = interpretPicture(readWithSides(request.opaque, request.read), framing, nullptr, shot.deepOpaque);
   // Deep samples lie in the picture's own pixels: they need no camera, but fog does.
-  shot.hasCamera = shot.hasScene || first.gbuffer.camera || !std::holds_alternative<std::monostate>(request.camera);
+  shot.hasCamera = shot.hasScene || first.gbuffer.camera || isChosen(request.camera);
   if (shot.hasCamera)
     shot.camera = chooseCamera(request.camera, first.gbuffer, shot.scene, request.opaque, first.cameraRefusal);
   shot.opaque = interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr,
@@ -146,6 +162,10 @@ void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal
 
 }  // namespace
 
+Shot::~Shot() {
+  if (lender) lender->takeBack(opaque.gbuffer);
+}
+
 OpaqueFile readPictureFile(const std::string& path, const ReadOptions& options, const Camera* camera,
                            std::unique_ptr<DeepOpaque>& deep) {
   return interpretPicture(readWithSides(path, options), options, camera, deep);
@@ -161,15 +181,18 @@ Camera chooseCamera(const CameraChoice& choice, const GBuffer& gbuffer, const Sc
                     const std::string& opaquePath, const std::string& refused) {
   if (const auto* placed = std::get_if<PlacedCamera>(&choice)) return placedCamera(*placed, gbuffer);
   if (const auto* named = std::get_if<NamedCamera>(&choice)) return namedCamera(named->name, scene, gbuffer);
+  if (const auto* fitted = std::get_if<FittedCamera>(&choice))
+    return fittedCamera(*fitted, scene, gbuffer.display, gbuffer.pixelAspect);
+  if (const auto* matrices = std::get_if<Camera>(&choice)) return *matrices;
   if (gbuffer.camera) return *gbuffer.camera;
   if (allOneCamera(scene.cameras, gbuffer)) return cameraOf(scene.cameras[0], gbuffer.display, gbuffer.pixelAspect);
   if (scene.cameras.empty() && !refused.empty())
-    throw MeaningError(refused + "; found no glTF camera either, expected one or --camera");
+    throw MeaningError(refused + "; found no glTF camera either, expected one or --camera, " + kCameraExamples);
   if (scene.cameras.empty())
     throw MeaningError(
         fmt::format("{}: no camera: found neither worldToCamera and worldToNDC attributes nor a glTF camera, expected "
-                    "one or --camera",
-                    opaquePath));
+                    "one or --camera, {}",
+                    opaquePath, kCameraExamples));
   throw MeaningError(fmt::format("{}: found {} cameras ({}), expected one, or --camera NAME", opaquePath,
                                  scene.cameras.size(), namesOf(scene.cameras)));
 }

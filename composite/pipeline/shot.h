@@ -14,6 +14,12 @@ namespace pellucid {
 
 // Nothing of it changes once it is loaded; deep files keep their place in themselves as they are read.
 struct Shot {
+  Shot() = default;
+  ~Shot();  // gives back what it borrowed
+  Shot(const Shot&) = delete;
+  Shot& operator=(const Shot&) = delete;
+
+  std::shared_ptr<MemoryPicture> lender;  // of the picture's colours and depths; null for those of a file
   OpaqueFile opaque;
   Scene scene;
   Camera camera;

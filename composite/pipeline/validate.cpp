@@ -5,6 +5,7 @@
 #include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/fog_step.h"
 #include "composite/pipeline/foliage_step.h"
+#include "composite/pipeline/memory_picture.h"
 #include "composite/pipeline/refusals.h"
 #include "composite/pipeline/shadow_step.h"
 #include "gbuffer/errors.h"
@@ -16,6 +17,7 @@ void validate(const Request& request) {
     if (row.applies(request))
       throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
+  checkMemoryPicture(request.shot);
   checkColours(request.shot.colour);
   checkShadows(request.shadows);
   checkFoliage(request.foliage);

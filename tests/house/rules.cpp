@@ -20,6 +20,7 @@ const std::map<std::string, Names> kArrows = {
     {"composite", {"composite", "gbuffer", "shaders"}},
     {"composite/pipeline", {"composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
     {"composite/cli", {"composite/cli", "composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
+    {"python", {"python", "composite/cli", "composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
     {"samples", {"samples", "composite/cli", "composite/pipeline", "composite", "engine_bridge", "gbuffer", "shaders"}},
     // Benchmarks measure what tests build: they share tests/support.
     {"bench",
@@ -40,6 +41,7 @@ const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine", 
                               {"openvdb/", {"engine_bridge/scene/parts"}},
                               {"OpenImageIO/", {"gbuffer/parts", "composite/study/parts", "samples"}},
                               {"OpenColorIO/", {"composite/colour"}},
+                              {"pybind11/", {"python"}},
                               {"OpenEXR/", {"gbuffer", "samples/generate"}}};
 
 bool isBelow(const std::string& path, const std::string& folder) {
@@ -93,7 +95,7 @@ bool isAllowedDirective(const std::string& line) {
 
 const std::vector<std::string>& rooms() {
   static const std::vector<std::string> names = {"shaders", "gbuffer", "engine_bridge", "composite",
-                                                 "samples", "bench",   "tests"};
+                                                 "python",  "samples", "bench",         "tests"};
   return names;
 }
 
