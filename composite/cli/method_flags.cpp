@@ -47,9 +47,13 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
                       "What the weighted mean of the layers is divided by: per channel, or one number as published")
           ->check(CLI::IsMember({"spectral", "published"}))
           ->capture_default_str();
-  weightOption_ = verb.add_option("--weight", weight,
-                                  weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
-                      ->capture_default_str();
+  weightOption_ =
+      verb.add_option("--weight", weight,
+                      weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels. auto, for "
+                                                   "phenomenological and weighted sums of a whole shot; eq5 beside "
+                                                   "--weight-range, --precision published and in other methods"
+                                                 : ""))
+          ->default_str(takesAuto ? "auto" : weight);
   verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for " + rangedWeights());
   verb.add_option(
           "--weight-reference", weightReference,

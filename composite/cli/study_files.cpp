@@ -43,6 +43,7 @@ nlohmann::json jsonOf(const std::vector<StudyRow>& rows) {
                     {"bitsPerPixel", row.bits},
                     {"passes", row.passes},
                     {"paretoFront", row.front}});
+    if (!row.weight.empty()) list.back()["weight"] = row.weight;
   }
   return list;
 }
@@ -60,7 +61,9 @@ void writeStudy(const std::string& folder, const std::string& opaque, const Stud
   if (!writePlotPng(base + "png", plot)) say("study.png has no labels: no font was found (fonts-dejavu-core)");
   Page page;
   page.title = "What each method pays to miss the truth";
-  page.lines = {opaque + ", weight " + outcome.weight};
+  page.lines = {opaque};
+  for (const StudyRow& row : rows)
+    if (!row.weight.empty()) page.lines.push_back(rowName(row) + ": weight " + row.weight);
   PageTable table{"Error against sorted over", studyHead(), {}};
   for (const StudyRow& row : rows) table.rows.push_back(studyCells(row));
   page.tables.push_back(std::move(table));

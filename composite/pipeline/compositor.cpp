@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "composite/antialias.h"
+#include "composite/pipeline/default_weight.h"
 #include "composite/pipeline/fit.h"
 #include "composite/pipeline/foliage_step.h"
 #include "composite/pipeline/held_out_planes.h"
@@ -27,9 +28,10 @@ bool sameLight(const Request& a, const Request& b) {
 }
 
 // Whether a power of depth needs to know where the layers begin.
-bool asksDepths(const SumsRequest& sums) {
+bool asksDepths(const Request& request) {
+  const SumsRequest& sums = request.sums;
   const DepthWeight* row = sums.weight ? depthWeightOf(sums.weight->kind) : nullptr;
-  return !sums.weightReference && (sums.fitWeight || (row && row->reference == WeightReference::depth));
+  return !sums.weightReference && (fitsWeight(request) || (row && row->reference == WeightReference::depth));
 }
 
 // The beauty as shadows leave it, for a file of planes; empty where they changed nothing.
@@ -53,6 +55,16 @@ void expectPlacesHold(const Request& request) {
     refuse("--held-out-by", "all scenes at once", "every sample holds layers out on its own");
   if (request.shadows.apply)
     refuse("--apply-shadows", "composite", "planes hold no samples of the picture that could be dimmed");
+}
+
+// Planes are of sums, whatever else was asked: those of a request for the truth are the phenomenological ones.
+Request forSums(const Request& request) {
+  Request sums = request;
+  if (!paintsBy<PaintSorted>(request)) return sums;
+  sums.method = "phenomenological";
+  sums.paint = PaintSums{};
+  sums.decided.reset();
+  return sums;
 }
 
 // While it lives, the pass draws over another depth of the same picture. Without a pass there is nothing to draw.
@@ -95,7 +107,7 @@ Compositor::~Compositor() = default;
 Plan Compositor::plan(const Request& request) const {
   validate(request);
   const Request weighed = weighedByFile(request);
-  if (asksDepths(weighed.sums) && !knowsDepths_) {
+  if (asksDepths(weighed) && !knowsDepths_) {
     addLayerDepths(*shot_, facts_);
     knowsDepths_ = true;
   }
@@ -154,8 +166,10 @@ Compositor::Run Compositor::prepare(const Request& request) {
   if (pass) placeOccluders(request.foliage, run.pass, *pass, *run.lighting->picture.gbuffer, shot_->camera, journal_);
   if (run.plan.fitsWeight) {
     RunCounts unused;
-    const PaintContext context{run.plan, *shot_, run.lighting->picture, *run.sources, device_, journal_, unused};
-    run.pass.weight = run.plan.pass.weight = fittedWeight(context, run.pass);
+    const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+    PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), edges.get(), pass, shot_->camera);
+    const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
+    run.pass.weight = run.plan.pass.weight = fittedWeight(context, moving, run.pass);
   }
   return run;
 }
@@ -229,7 +243,8 @@ shading::WeightSettings Compositor::fitWeight(Request request) {
   return prepare(request).plan.pass.weight;
 }
 
-RunCounts Compositor::accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each) {
+RunCounts Compositor::accumulate(const Request& asked, const std::function<void(PassPlanes&&)>& each) {
+  const Request request = forSums(asked);
   if (shot_->deepOpaque) expectPlacesHold(request);
   const Run run = prepare(request);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
