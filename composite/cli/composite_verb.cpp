@@ -59,7 +59,7 @@ void composite(const CompositeFlags& flags) {
     return;
   }
   Result result = compositor.run(request);
-  nlohmann::json report{{"output", flags.output}, {"method", request.method}};
+  nlohmann::json report{{"output", flags.output}, {"method", result.plan.method}};
   reportSpace(compositor.shot().opaque.space, report);
   reportError(flags.run, result, report);
   say(result.stages.time("write", [&] { return compositor.write(flags.output, result); }));
@@ -89,7 +89,7 @@ void compositeViews(const CompositeFlags& flags) {
       continue;
     }
     results.push_back(compositor.run(request));
-    nlohmann::json each{{"view", view}, {"method", request.method}};
+    nlohmann::json each{{"view", view}, {"method", results.back().plan.method}};
     reportSpace(compositor.shot().opaque.space, each);
     reportError(flags.run, results.back(), each);
     report["views"].push_back(each);

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "composite/pipeline/cheapest.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/threads.h"
 
@@ -56,6 +57,13 @@ void reportError(const RunFlags& flags, const Result& result, nlohmann::json& re
                            {"bound", counts.bound}};
     if (counts.measured) report["tolerance"]["measured"] = *counts.measured;
     if (!flags.json) fmt::print("{}\n", toleranceLine(within->tolerance, counts));
+  }
+  if (const std::optional<Choice>& choice = result.choice) {
+    report["choice"] = {{"E", choice->tolerance},
+                        {"layersPerPixel", choice->layers},
+                        {"onProbes", choice->onProbes},
+                        {"why", reasonOf(*choice)}};
+    if (choice->measured) report["choice"]["measured"] = *choice->measured;
   }
   if (!result.error) return;
   const ErrorStatistics& error = *result.error;

@@ -188,14 +188,38 @@ std::vector<glm::dvec3> DrawnProbes::shown(const Veil& veil) const {
   return pictures;
 }
 
-double DrawnProbes::errorOf(const shading::WeightSettings& weight, std::size_t passes) {
+std::vector<glm::dvec3> DrawnProbes::differences(const shading::WeightSettings& weight, std::size_t passes) {
   std::vector<glm::dvec3> difference(count(), glm::dvec3(0.0));
   for (std::size_t k = 0; k < passes; ++k) {
     const std::vector<glm::dvec3> got = shown(veilOf(passes_[k], weight));
     for (std::size_t i = 0; i < count(); ++i)
       difference[i] += static_cast<double>(passes_[k].weight[i]) * (got[i] - passes_[k].truth[i]);
   }
-  return meanSize(difference) / static_cast<double>(passes);
+  return difference;
+}
+
+double DrawnProbes::errorOf(const shading::WeightSettings& weight, std::size_t passes) {
+  return meanSize(differences(weight, passes)) / static_cast<double>(passes);
+}
+
+double DrawnProbes::brokenPart(const shading::WeightSettings& weight, double tolerance) {
+  const auto passes = static_cast<double>(passes_.size());
+  const std::vector<glm::dvec3> difference = differences(weight, passes_.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      double truth = 0.0;
+      for (const Pass& pass : passes_) truth += static_cast<double>(pass.weight[i]) * pass.truth[i][c];
+      const double promised = tolerance * std::max(1.0, std::abs(truth) / passes);
+      const double off = std::abs(difference[i][c]) / passes;
+      if (std::isfinite(off) && off > 0.0) largest = std::max(largest, off / promised);
+    }
+  return largest;
+}
+
+double DrawnProbes::layers() const {
+  const double cell = grid_.cell(), pixels = static_cast<double>(context_.picture.gbuffer->beauty.size());
+  return static_cast<double>(passes_[0].drawn.fragments.size()) * cell * cell / pixels;
 }
 
 double DrawnProbes::rounding() const {

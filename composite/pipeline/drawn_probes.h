@@ -29,6 +29,11 @@ class DrawnProbes {
   double roughError(const shading::WeightSettings& weight) { return errorOf(weight, 1); }
   // What floats round by, in the mean.
   double rounding() const;
+  // Layers in the mean of all pixels of the picture, those without any among them; of the first pass, without fog and
+  // low resolution.
+  double layers() const;
+  // Largest error of a probe, as a part of what a tolerance promises of it.
+  double brokenPart(const shading::WeightSettings& weight, double tolerance);
 
  private:
   struct Pass {
@@ -57,6 +62,8 @@ class DrawnProbes {
   Veil veilOfSums(const Pass& pass, const PassSettings& sample) const;
   Veil veilOfLists(const Pass& pass, const PassSettings& sample);
   std::vector<glm::dvec3> shown(const Veil& veil) const;
+  // The picture less the truth, added over passes.
+  std::vector<glm::dvec3> differences(const shading::WeightSettings& weight, std::size_t passes);
   double errorOf(const shading::WeightSettings& weight, std::size_t passes);
   bool ofSums() const { return context_.plan.as<PaintSums>() != nullptr; }
   bool hasLow() const { return context_.plan.lowResolution > 1; }

@@ -193,7 +193,11 @@ std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
     lines.push_back(fmt::format("{:<12}{}", what, how));
   };
   say("method", plan.methodReason.empty() ? plan.method : fmt::format("{} ({})", plan.method, plan.methodReason));
-  say("painted by", nameOf(plan.route));
+  const auto* cheapest = plan.as<PaintCheapest>();
+  say("painted by", cheapest ? fmt::format("sums where no pixel errs by more than {} of the larger of 1 and the truth, "
+                                           "else the truth: probes and then every pixel decide",
+                                           cheapest->tolerance)
+                             : nameOf(plan.route));
   say("tier", plan.route == Route::lists && !plan.isExact() ? "double precision, pixel by pixel"
                                                             : std::string(tierRow(plan.tier).name));
   std::string layers = facts.hasScene ? fmt::format("{} triangles", facts.triangles) : "";
