@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/model_flag.h"
 #include "composite/cli/preview_flags.h"
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
@@ -20,6 +21,7 @@ struct CompositeFlags {
   std::string output;
   RenderFlags render;
   PreviewFlags preview;
+  ModelFlag model;
   RunFlags run;
   bool explain = false;
 };
@@ -52,7 +54,7 @@ std::vector<std::string> writeViews(const std::string& path, const std::vector<s
 void composite(const CompositeFlags& flags) {
   const Threads threads(flags.run.threads);
   const Request request = flags.render.request();
-  flags.preview.check(request.shot.colour);
+  flags.preview.check(request.shot.colour, request.shot.scene.assetRoot);
   Compositor compositor(request, [](const std::string& note) { say(note); });
   if (flags.explain) {
     for (const std::string& line : describe(compositor.plan(request), compositor.facts())) fmt::print("{}\n", line);
@@ -63,7 +65,8 @@ void composite(const CompositeFlags& flags) {
   reportSpace(compositor.shot().opaque.space, report);
   reportError(flags.run, result, report);
   say(result.stages.time("write", [&] { return compositor.write(flags.output, result); }));
-  flags.preview.write(request.shot.colour, compositor.shot().opaque.space, result.picture.rgba);
+  flags.preview.write(request.shot.colour, request.shot.scene.assetRoot, compositor.shot().opaque.space,
+                      result.picture.rgba);
   reportRun(flags.run, result.stages, result.counts, result.device, report);
 }
 
@@ -119,7 +122,11 @@ void addComposite(CLI::App& app) {
   flags->preview.addTo(*verb);
   verb->add_flag("--explain", flags->explain, "Print what would be done and why, and stop before anything is drawn");
   flags->run.addTo(*verb);
-  verb->callback([flags] { flags->render.read.view == "all" ? compositeViews(*flags) : composite(*flags); });
+  flags->model.addTo(*verb);
+  verb->callback([flags, verb] {
+    flags->model.apply(*verb);
+    flags->render.read.view == "all" ? compositeViews(*flags) : composite(*flags);
+  });
 }
 
 }  // namespace pellucid::cli

@@ -29,7 +29,7 @@ void writePreview(const FlattenFlags& flags, const FlatPicture& flat) {
   std::vector<std::string> notes;
   Image<glm::vec4> picture(flat.data.width(), flat.data.height());
   for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = glm::vec4(glm::vec3(flat.light[i]), 1.0f);
-  flags.preview.write(flags.colour.request(), statedSpace(flat.like, "", notes), picture);
+  flags.preview.write(flags.colour.request(), flags.colour.assetRoot, statedSpace(flat.like, "", notes), picture);
   say(notes);
 }
 
@@ -57,7 +57,7 @@ ExtraLayer layersOf(const FlatPicture& flat) {
 
 void flattenVerb(const FlattenFlags& flags) {
   const Threads threads(flags.run.threads);
-  flags.preview.check(flags.colour.request(), true);
+  flags.preview.check(flags.colour.request(), flags.colour.assetRoot, true);
   Stages stages;
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
   const std::uint64_t most = parseBudget(flags.budget) / 32;
