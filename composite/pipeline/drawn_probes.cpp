@@ -116,10 +116,7 @@ DrawnProbes::Pass DrawnProbes::passOf(const Gathered& from) {
     pass.fog.emplace(*fog, gbuffer, pass.sample.sample, grid_.places(), pass.drawn.solid);
   else if (fog)
     pass.drawn = withFog(*fog, gbuffer, pass.sample.sample, pass.drawn, grid_.places());
-  if (hasLow() && ofSums())
-    pass.view =
-        lowViewOf(gbuffer, solidsOf(*context_.sources.triangles(), fullResolutionPart(context_.plan, pass.sample)),
-                  context_.shot.camera, context_.plan.lowResolution);
+  if (hasLow() && ofSums()) listLow(pass);
   return pass;
 }
 
@@ -130,6 +127,29 @@ ProbeLists DrawnProbes::listed(const PassSettings& sample, VolumeRule rule) cons
   ProbeLists lists(grid_);
   context_.sources.each({probed, context_.picture, rule}, [&](const FragmentLists& part) { lists.add(part); });
   return lists;
+}
+
+void DrawnProbes::listLow(Pass& pass) const {
+  const GBuffer& gbuffer = *context_.picture.gbuffer;
+  TransparentPass& triangles = *context_.sources.triangles();
+  pass.view = lowViewOf(gbuffer, solidsOf(triangles, fullResolutionPart(context_.plan, pass.sample)),
+                        context_.shot.camera, context_.plan.lowResolution);
+  const DrawnOver over(triangles, *pass.view, gbuffer, context_.shot.camera);
+  triangles.fragments(lowResolutionPart(pass.sample), [&](const FragmentLists& lists) { pass.low.push_back(lists); });
+}
+
+// What lowSums() draws, from the lists.
+OitPlanes DrawnProbes::lowSumsOf(const Pass& pass, const PassSettings& sample) const {
+  Plan floats = context_.plan;
+  PassSettings part = sample;
+  if (floats.isPublished()) {
+    floats.tier = Tier::float32;
+    part.normalisation = shading::PLD_NORMALISE_SPECTRAL;
+  }
+  PublishedClamps unused;
+  OitPlanes planes = emptySums(floats, part, pass.view->gbuffer.display, pass.view->gbuffer.data);
+  for (const FragmentLists& lists : pass.low) foldInto(floats, lists, part, planes, unused);
+  return planes;
 }
 
 std::vector<glm::dvec3> DrawnProbes::truthOf(const Gathered& from, const Pass& pass) const {
@@ -157,8 +177,7 @@ Veil DrawnProbes::veilOfSums(const Pass& pass, const PassSettings& sample) const
   PublishedClamps unused;
   OitPlanes planes = emptySums(context_.plan, sample, window, window);
   foldInto(context_.plan, pass.drawn, sample, planes, unused);
-  if (pass.view)
-    addLowResolution(lowSums(context_, *pass.view, sample), *pass.view, sample.sample, grid_.places(), planes, unused);
+  if (pass.view) addLowResolution(lowSumsOf(pass, sample), *pass.view, sample.sample, grid_.places(), planes, unused);
   if (pass.fog) pass.fog->addTo(planes, unused);
   return resolve(planes, context_.plan.resolve);
 }

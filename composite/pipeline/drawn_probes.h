@@ -38,12 +38,13 @@ class DrawnProbes {
  private:
   struct Pass {
     PassSettings sample;
-    int number;                     // among the plan's passes
-    std::vector<float> weight;      // of the probes in the mean of all passes, 1 but at edges
-    FragmentLists drawn;            // what is weighed; of lists, with the fog between them
-    std::optional<MarchedFog> fog;  // of sums
-    std::optional<LowView> view;    // of sums
-    std::vector<glm::dvec3> truth;  // picture of the probes
+    int number;                      // among the plan's passes
+    std::vector<float> weight;       // of the probes in the mean of all passes, 1 but at edges
+    FragmentLists drawn;             // what is weighed; of lists, with the fog between them
+    std::optional<MarchedFog> fog;   // of sums
+    std::optional<LowView> view;     // of sums
+    std::vector<FragmentLists> low;  // of the view: listed once, for one weight after another
+    std::vector<glm::dvec3> truth;   // picture of the probes
   };
   // Lists of the probes of a pass: as they are weighed, and as the truth has them where that differs.
   struct Gathered {
@@ -56,6 +57,8 @@ class DrawnProbes {
   Gathered gathered(const PassSettings& sample, int number);
   Pass passOf(const Gathered& from);
   ProbeLists listed(const PassSettings& sample, VolumeRule rule) const;
+  void listLow(Pass& pass) const;
+  OitPlanes lowSumsOf(const Pass& pass, const PassSettings& sample) const;
   WeighedDepths depthsIn(const Pass& pass) const;
   std::vector<glm::dvec3> truthOf(const Gathered& from, const Pass& pass) const;
   Veil veilOf(const Pass& pass, const shading::WeightSettings& weight);
