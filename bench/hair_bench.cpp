@@ -44,7 +44,7 @@ Measured measure(int hairs, const std::string& height, const std::string& budget
   Measured result;
   result.file = static_cast<double>(std::filesystem::file_size(folder + "/hair.glb")) / kMiB;
   const Ended ended = must({"composite", "hair.exr", "hair.glb", "-o", "out.exr", "--aa", "1", "--budget", budget,
-                            "--stats", "--json", "--method", "phenomenological"},
+                            "--stats", "--json", "--method", "phenomenological", "--weight", "eq5"},
                            "pellucid", folder);
   const nlohmann::json statistics = nlohmann::json::parse(ended.out).at("statistics");
   result.triangles = statistics.at("triangles");

@@ -29,8 +29,9 @@ Ended require(const Ended& ended) {
 }
 
 Timing composite(const std::string& stem, const std::string& occlusion) {
-  const Ended ended = require(runProgram({"composite", stem + ".exr", stem + ".glb", "-o", stem + "-out.exr", "--json",
-                                          "--stats", "--occlusion", occlusion, "--method", "phenomenological"}));
+  const Ended ended =
+      require(runProgram({"composite", stem + ".exr", stem + ".glb", "-o", stem + "-out.exr", "--json", "--stats",
+                          "--occlusion", occlusion, "--method", "phenomenological", "--weight", "eq5"}));
   const nlohmann::json statistics = nlohmann::json::parse(ended.out).at("statistics");
   return {ended.seconds, statistics.at("seconds").get<std::map<std::string, double>>(), statistics.at("pruned")};
 }

@@ -1,6 +1,7 @@
 #include "composite/probe_lists.h"
 
 #include <cmath>
+#include <utility>
 
 #include "shaders/probe.h"
 
@@ -14,6 +15,16 @@ ProbeGrid::ProbeGrid(const Window& data, std::size_t most) : data_(data), number
         numbers_.at(x, y) = static_cast<std::int32_t>(places_.size());
         places_.emplace_back(x, y);
       }
+}
+
+void ProbeGrid::keep(const std::vector<std::uint8_t>& kept) {
+  const PixelPlaces before = std::move(places_);
+  places_.clear();
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    std::int32_t& number = numbers_.at(before[i].x, before[i].y);
+    number = kept[i] ? static_cast<std::int32_t>(places_.size()) : -1;
+    if (kept[i]) places_.push_back(before[i]);
+  }
 }
 
 ProbeLists::ProbeLists(const ProbeGrid& grid)
@@ -32,6 +43,25 @@ void ProbeLists::add(const FragmentLists& lists) {
                                lists.fragments.begin() + static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]));
       solids_[probe] = lists.solid[pixel];
     }
+}
+
+void ProbeLists::mark(std::vector<std::uint8_t>& touched) const {
+  for (std::size_t i = 0; i < fragments_.size(); ++i)
+    if (!fragments_[i].empty() || solids_[i].a < INFINITY) touched[i] = 1;
+}
+
+void ProbeLists::keep(const std::vector<std::uint8_t>& kept) {
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (!kept[i]) continue;
+    if (next != i) {
+      fragments_[next] = std::move(fragments_[i]);
+      solids_[next] = solids_[i];
+    }
+    ++next;
+  }
+  fragments_.resize(next);
+  solids_.resize(next);
 }
 
 FragmentLists ProbeLists::finish() const {

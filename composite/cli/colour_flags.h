@@ -10,9 +10,10 @@ namespace pellucid::cli {
 
 struct ColourFlags {
   std::string config, workingSpace = "auto";
+  std::string assetRoot;  // of addConfigTo()
   //   help  of --working-space
   void addTo(CLI::App& verb, const std::string& help);
-  // --ocio alone, for what is only shown.
+  // --ocio alone, for what is only shown, and the folder whose files it may name besides.
   void addConfigTo(CLI::App& verb);
   // The config is that of --ocio, else of $OCIO.
   ColourRequest request() const;

@@ -43,18 +43,19 @@ std::vector<std::string> writeViews(const std::string& path, const std::vector<s
 void composite(const CompositeFlags& flags) {
   const Threads threads(flags.run.threads);
   const Request request = flags.render.request();
-  flags.preview.check(request.shot.colour);
+  flags.preview.check(request.shot.colour, request.shot.scene.assetRoot);
   Compositor compositor(request, [](const std::string& note) { say(note); });
   if (flags.explain) {
     for (const std::string& line : describe(compositor.plan(request), compositor.facts())) fmt::print("{}\n", line);
     return;
   }
   Result result = compositor.run(request);
-  nlohmann::json report{{"output", flags.output}, {"method", request.method}};
+  nlohmann::json report{{"output", flags.output}, {"method", result.plan.method}};
   reportSpace(compositor.shot().opaque.space, report);
   reportError(flags.run, result, report);
   say(result.stages.time("write", [&] { return compositor.write(flags.output, result); }));
-  flags.preview.write(request.shot.colour, compositor.shot().opaque.space, result.picture.rgba);
+  flags.preview.write(request.shot.colour, request.shot.scene.assetRoot, compositor.shot().opaque.space,
+                      result.picture.rgba);
   reportRun(flags.run, result.stages, result.counts, result.device, report);
 }
 
@@ -80,7 +81,7 @@ void compositeViews(const CompositeFlags& flags) {
       continue;
     }
     results.push_back(compositor.run(request));
-    nlohmann::json each{{"view", view}, {"method", request.method}};
+    nlohmann::json each{{"view", view}, {"method", results.back().plan.method}};
     reportSpace(compositor.shot().opaque.space, each);
     reportError(flags.run, results.back(), each);
     report["views"].push_back(each);
@@ -107,6 +108,7 @@ void CompositeFlags::addTo(CLI::App& verb, bool allViews) {
   preview.addTo(verb);
   verb.add_flag("--explain", explain, "Print what would be done and why, and stop before anything is drawn");
   run.addTo(verb);
+  model.addTo(verb);
 }
 
 void addComposite(CLI::App& app) {
@@ -114,7 +116,10 @@ void addComposite(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "composite", "Composite transparent geometry onto an opaque render: exactly, unless --method says otherwise");
   flags->addTo(*verb);
-  verb->callback([flags] { flags->render.read.view == "all" ? compositeViews(*flags) : composite(*flags); });
+  verb->callback([flags, verb] {
+    flags->model.apply(*verb);
+    flags->render.read.view == "all" ? compositeViews(*flags) : composite(*flags);
+  });
 }
 
 }  // namespace pellucid::cli

@@ -19,7 +19,7 @@ void writePreview(const FlattenFlags& flags, const FlatPicture& flat) {
   std::vector<std::string> notes;
   Image<glm::vec4> picture(flat.data.width(), flat.data.height());
   for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = glm::vec4(glm::vec3(flat.light[i]), 1.0f);
-  flags.preview.write(flags.colour.request(), statedSpace(flat.like, "", notes), picture);
+  flags.preview.write(flags.colour.request(), flags.colour.assetRoot, statedSpace(flat.like, "", notes), picture);
   say(notes);
 }
 
@@ -58,7 +58,7 @@ void flattenVerb(const FlattenFlags& flags) {
 }  // namespace
 
 FlatPicture flattenFiles(const FlattenFlags& flags, Stages& stages) {
-  flags.preview.check(flags.colour.request(), true);
+  flags.preview.check(flags.colour.request(), flags.colour.assetRoot, true);
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
   const std::uint64_t most = parseBudget(flags.budget) / 32;
   FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most, flags.view); });

@@ -19,7 +19,7 @@ constexpr int kMostSamples = 65536;
 ColourSpace spaceToRender(const GbufferFlags& flags) {
   const ColourRequest request = flags.colour.request();
   checkColours(request);
-  const WorkingSpace colours(request);  // reads the config, whatever it is then asked for
+  const WorkingSpace colours(request, flags.assetRoot);  // reads the config, whatever it is then asked for
   if (request.workingSpace == "auto") return {};
   std::vector<std::string> notes;
   return colours.of({}, flags.output, notes);
@@ -33,7 +33,7 @@ void gbuffer(const GbufferFlags& flags) {
   nlohmann::json report{
       {"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", part.opaqueInstances}};
   reportSpace(part.space, report);
-  flags.preview.write(flags.colour.request(), part.space, part.planes.beauty);
+  flags.preview.write(flags.colour.request(), flags.assetRoot, part.space, part.planes.beauty);
   RunCounts counts;
   counts.triangles = part.triangles;
   reportRun(flags.run, stages, counts, part.device, report);
@@ -50,7 +50,7 @@ RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages) {
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
   part.space = spaceToRender(flags);
-  flags.preview.check(flags.colour.request());
+  flags.preview.check(flags.colour.request(), flags.assetRoot);
   Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
   say(scene.notes);
   say(bringInto(scene, part.space.fromRec709));
@@ -109,8 +109,9 @@ void addGbuffer(CLI::App& app) {
   verb->add_option("--set", flags->overrides,
                    "MATERIAL.key=value: thin, collimation, coverage, additive, lowResolution, castsShadow")
       ->allow_extra_args(false);
-  verb->add_option("--asset-root", flags->assetRoot,
-                   "Folder whose files a glTF may name besides those under its own folder");
+  verb->add_option(
+      "--asset-root", flags->assetRoot,
+      "Folder whose files a glTF and an OpenColorIO config may name besides those under their own folders");
   verb->add_option("--unit", flags->unit, "Metres per scene unit")->check(CLI::PositiveNumber)->capture_default_str();
   verb->add_option("--lumens-per-watt", flags->lumensPerWatt, "glTF lights are photometric, renders are not")
       ->check(CLI::PositiveNumber)

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include "composite/cli/options.h"
+#include "gbuffer/errors.h"
 #include "gbuffer/tiers.h"
 #include "gbuffer/weight_text.h"
 
 namespace pellucid::cli {
 namespace {
+
+constexpr const char* kAuto = "auto";
 
 std::vector<GivenFlag> givenFlags(const CLI::App& verb) {
   std::vector<GivenFlag> given;
@@ -23,14 +26,22 @@ void MethodFlags::addTo(CLI::App& verb, bool listsToo, UsualMethod usual) {
   usual_ = usual;
   verb_ = &verb;
   method = usual == UsualMethod::truth ? "over" : "phenomenological";
-  const std::string names = listsToo ? allMethodNames() : sumMethodNames();
+  const bool takesAuto = usual == UsualMethod::truth;
+  const std::string names =
+      (listsToo ? allMethodNames() : sumMethodNames()) +
+      (takesAuto ? ", or auto: with --tolerance, the cheapest of over and phenomenological that keeps it on this shot"
+                 : "");
   methodOption_ = verb.add_option("--method", method, names)
-                      ->check([listsToo, names](const std::string& text) -> std::string {
+                      ->check([listsToo, takesAuto, names](const std::string& text) -> std::string {
+                        if (takesAuto && text == kAuto) return "";
                         const Method* row = methodNamed(text);
                         if (row && (listsToo || row->isSum)) return "";
                         return fmt::format("--method: found '{}', expected {}", text, names);
                       })
                       ->capture_default_str();
+  if (takesAuto)
+    verb.add_option("--method-from", methodFrom,
+                    "Picture whose method and weight to take: what --method auto has found, for the next frame");
   std::vector<std::string> tiers;
   std::string promises;
   for (const PrecisionTier& row : kTiers) {
@@ -47,9 +58,13 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
                       "What the weighted mean of the layers is divided by: per channel, or one number as published")
           ->check(CLI::IsMember({"spectral", "published"}))
           ->capture_default_str();
-  weightOption_ = verb.add_option("--weight", weight,
-                                  weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels" : ""))
-                      ->capture_default_str();
+  weightOption_ =
+      verb.add_option("--weight", weight,
+                      weightNames() + (takesAuto ? ", or auto: fitted to the truth on probe pixels. auto, for "
+                                                   "phenomenological and weighted sums of a whole shot; eq5 beside "
+                                                   "--weight-range, --precision published and in other methods"
+                                                 : ""))
+          ->default_str(takesAuto ? "auto" : weight);
   verb.add_option("--weight-range", weightRange, "NEAR:FAR in metres, for " + rangedWeights());
   verb.add_option(
           "--weight-reference", weightReference,
@@ -67,7 +82,14 @@ Tier tierOf(const std::string& precision) {
 
 void MethodFlags::into(Request& request) const {
   request.method = method;
-  if (methodOption_ && methodOption_->count() == 0 && usual_ == UsualMethod::truth) {
+  request.methodFrom = methodFrom;
+  if (!methodFrom.empty()) {
+    for (const char* flag :
+         {"--method", "--weight", "--weight-range", "--weight-reference", "--weight-from", "--tolerance", "--systems"})
+      if (const CLI::Option* option = verb_->get_option_no_throw(flag); option && option->count() > 0)
+        throw UsageError(
+            fmt::format("--method-from: found a file with {}, expected one or the other: the file says both", flag));
+  } else if (methodOption_ && methodOption_->count() == 0 && usual_ == UsualMethod::truth) {
     request.decided = decideMethod(givenFlags(*verb_));
     request.method = request.decided->method;
   } else if (!methodOption_) {
@@ -76,6 +98,8 @@ void MethodFlags::into(Request& request) const {
   request.tier = tierOf(precision);
   if (request.method == "over")
     request.paint = PaintSorted{};
+  else if (request.method == kAuto)
+    request.paint = PaintCheapest{};
   else if (const std::optional<ChosenMethod> chosen = chooseMethod(request.method))
     request.paint = PaintListed{*chosen};
   else

@@ -15,7 +15,8 @@ enum class UsualMethod {
 };
 
 struct MethodFlags {
-  std::string method, precision = "float", normalisation = "spectral", weight = "eq5", weightRange, weightFrom;
+  std::string method, precision = "float", normalisation = "spectral", weight = "eq5", weightRange, weightFrom,
+                      methodFrom;
   std::optional<double> weightReference;
   void addTo(CLI::App& verb, bool listsToo, UsualMethod usual);
   void addWeightTo(CLI::App& verb, bool takesAuto);  // --normalisation, --weight, --weight-range alone

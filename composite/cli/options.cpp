@@ -42,7 +42,8 @@ void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--scene-unit", unit, "Metres in one unit of the glTF, of fog and its grids; --unit is the picture's")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb.add_option("--asset-root", assetRoot, "Folder whose files a glTF may name besides those under its own folder");
+  verb.add_option("--asset-root", assetRoot,
+                  "Folder whose files a glTF and an OpenColorIO config may name besides those under their own folders");
   verb.add_option("--lumens-per-watt", lumensPerWatt, "glTF lights are photometric, renders are not")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

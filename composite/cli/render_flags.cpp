@@ -75,7 +75,14 @@ void RenderFlags::paintInto(Request& request) const {
   stochastic.into(request);
   const bool sums = paintsBy<PaintSums>(request);
   const auto* listed = std::get_if<PaintListed>(&request.paint);
-  if (tolerance) {
+  if (auto* cheapest = std::get_if<PaintCheapest>(&request.paint)) {
+    if (!tolerance)
+      throw UsageError("--method: found auto without --tolerance, expected the error to live with: --tolerance E");
+    if (systems != "off")
+      throw UsageError(
+          "--method: found auto with --systems, expected one of them: passes for each system are a method");
+    cheapest->tolerance = *tolerance;
+  } else if (tolerance) {
     if (!sums && !(listed && (listed->method.name == "weighted" || listed->method.name == "blended")))
       throw UsageError(
           fmt::format("--tolerance: --method {} has no certificate, expected phenomenological, weighted or blended",

@@ -56,7 +56,8 @@ void render(const SceneRenderFlags& flags) {
   nlohmann::json report{{"output", flags.opaque.output}, {"method", request.method}};
   reportSpace(compositor.shot().opaque.space, report);
   say(stages.time("write", [&] { return compositor.write(flags.opaque.output, result); }));
-  flags.opaque.preview.write(request.shot.colour, compositor.shot().opaque.space, result.picture.rgba);
+  flags.opaque.preview.write(request.shot.colour, request.shot.scene.assetRoot, compositor.shot().opaque.space,
+                             result.picture.rgba);
   reportRun(flags.opaque.run, stages, result.counts, result.device, report);
 }
 

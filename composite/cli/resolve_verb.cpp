@@ -12,7 +12,7 @@ namespace {
 void resolveVerb(const ResolveFlags& flags) {
   const Threads threads(flags.run.threads);
   const ColourRequest colour = flags.colour.request();
-  flags.preview.check(colour, true);
+  flags.preview.check(colour, flags.colour.assetRoot, true);
   Journal notes = journal();
   const ResolvedPlanes result = resolvePlanes(flags.request(), notes);
   say(notes.time("write", [&] {
@@ -21,7 +21,7 @@ void resolveVerb(const ResolveFlags& flags) {
   }));
   nlohmann::json report{{"output", flags.output}};
   reportSpace(result.opaque.space, report);
-  flags.preview.write(colour, result.opaque.space, result.picture.rgba);
+  flags.preview.write(colour, flags.colour.assetRoot, result.opaque.space, result.picture.rgba);
   reportRun(flags.run, notes.stages, {}, result.device, report);
 }
 

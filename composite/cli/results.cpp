@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "composite/pipeline/cheapest.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/threads.h"
 
@@ -56,6 +57,13 @@ nlohmann::json errorsOf(const Result& result) {
                           {"recomputed", counts.recomputed},
                           {"bound", counts.bound}};
     if (counts.measured) found["tolerance"]["measured"] = *counts.measured;
+  }
+  if (const std::optional<Choice>& choice = result.choice) {
+    found["choice"] = {{"E", choice->tolerance},
+                       {"layersPerPixel", choice->layers},
+                       {"onProbes", choice->onProbes},
+                       {"why", reasonOf(*choice)}};
+    if (choice->measured) found["choice"]["measured"] = *choice->measured;
   }
   if (!result.error) return found;
   const ErrorStatistics& error = *result.error;

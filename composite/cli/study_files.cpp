@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/colour_flags.h"
 #include "composite/cli/messages.h"
 #include "composite/compare/page.h"
 #include "composite/study/plot.h"
@@ -26,7 +27,7 @@ void writeText(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-nlohmann::json jsonOf(const std::vector<StudyRow>& rows) {
+nlohmann::json jsonOf(const std::vector<StudyRow>& rows, const ColourSpace& space) {
   nlohmann::json list = nlohmann::json::array();
   for (const StudyRow& row : rows) {
     nlohmann::json stages = nlohmann::json::object();
@@ -46,6 +47,8 @@ nlohmann::json jsonOf(const std::vector<StudyRow>& rows) {
                     {"bitsPerPixel", row.bits},
                     {"passes", row.passes},
                     {"paretoFront", row.front}});
+    if (!row.weight.empty()) list.back()["weight"] = row.weight;
+    reportSpace(space, list.back());
   }
   return list;
 }
@@ -56,7 +59,7 @@ void makeFolder(const std::string& folder) {
   if (error) throw ResourceError(fmt::format("{}: cannot be made: {}", folder, error.message()));
 }
 
-void writeStudy(const std::string& folder, const std::string& opaque, const StudyOutcome& outcome) {
+void writeStudy(const std::string& folder, const OpaqueFile& opaque, const StudyOutcome& outcome) {
   const std::vector<StudyRow>& rows = outcome.rows;
   std::vector<PagePicture> pictures;
   for (std::size_t i = 0; i < rows.size(); ++i) pictures.push_back({rowName(rows[i]), outcome.pictures[i]});
@@ -64,12 +67,14 @@ void writeStudy(const std::string& folder, const std::string& opaque, const Stud
   const Plot plot = studyPlot(rows);
   writeText(base + "txt", studyText(rows));
   writeText(base + "csv", studyCsv(rows));
-  writeText(base + "json", jsonOf(rows).dump(2) + "\n");
+  writeText(base + "json", jsonOf(rows, opaque.space).dump(2) + "\n");
   writeText(base + "svg", plotSvg(plot));
   if (!writePlotPng(base + "png", plot)) say("study.png has no labels: no font was found (fonts-dejavu-core)");
   Page page;
   page.title = "What each method pays to miss the truth";
-  page.lines = {opaque + ", weight " + outcome.weight};
+  page.lines = {opaque.document.path, "Errors are measured in " + opaque.space.name + "."};
+  for (const StudyRow& row : rows)
+    if (!row.weight.empty()) page.lines.push_back(rowName(row) + ": weight " + row.weight);
   PageTable table{"Error against sorted over", studyHead(), {}};
   for (const StudyRow& row : rows) table.rows.push_back(studyCells(row));
   page.tables.push_back(std::move(table));

@@ -7,12 +7,13 @@
 
 namespace pellucid::cli {
 
-nlohmann::json jsonOf(const std::vector<StudyRow>& rows);
+//   space  of the pictures, in which errors are measured
+nlohmann::json jsonOf(const std::vector<StudyRow>& rows, const ColourSpace& space);
 
 void makeFolder(const std::string& folder);  // with those above it; throws ResourceError
 
 // study.txt, .csv, .json, .svg, .png and .html in a folder that is there. Throws ResourceError.
-//   opaque  the picture's name, for the page
-void writeStudy(const std::string& folder, const std::string& opaque, const StudyOutcome& outcome);
+//   opaque  the picture: its name, and its space
+void writeStudy(const std::string& folder, const OpaqueFile& opaque, const StudyOutcome& outcome);
 
 }  // namespace pellucid::cli

@@ -29,9 +29,10 @@ void study(const StudyFlags& flags) {
   Compositor compositor(base, [](const std::string& note) { say(note); });
   makeFolder(flags.folder);
   const StudyOutcome outcome = runStudy(compositor, candidates, base);
-  writeStudy(flags.folder, flags.render.opaque, outcome);
+  const OpaqueFile& picture = compositor.shot().opaque;
+  writeStudy(flags.folder, picture, outcome);
   if (flags.run.json)
-    fmt::print("{}\n", jsonOf(outcome.rows).dump(2));
+    fmt::print("{}\n", jsonOf(outcome.rows, picture.space).dump(2));
   else
     fmt::print("{}", studyText(outcome.rows));
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "composite/cli/model_flag.h"
 #include "composite/cli/preview_flags.h"
 #include "composite/cli/render_flags.h"
 #include "composite/compare/compare.h"
@@ -20,6 +21,7 @@ struct CompositeFlags {
   std::string output;
   RenderFlags render;
   PreviewFlags preview;
+  ModelFlag model;
   RunFlags run;
   bool explain = false;
   //   allViews  --view all is taken

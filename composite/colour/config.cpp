@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "composite/colour/library.h"
+#include "composite/colour/neighbours.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid {
@@ -202,7 +203,7 @@ ColourConfig ColourConfig::builtIn() {
   return ColourConfig(std::move(impl));
 }
 
-ColourConfig ColourConfig::read(const std::string& path, const std::string& by) {
+ColourConfig ColourConfig::read(const std::string& path, const std::string& by, const std::string& assetRoot) {
   ocio::SetLoggingLevel(ocio::LOGGING_LEVEL_NONE);  // what there is to say, exceptions say
   auto impl = std::make_unique<Impl>();
   impl->path = path;
@@ -213,6 +214,7 @@ ColourConfig ColourConfig::read(const std::string& path, const std::string& by) 
     throw InputError(
         fmt::format("{}: {}: found no valid OpenColorIO config, expected one: {}", path, by, oneLine(error.what())));
   }
+  expectNeighbours(*impl->config, path, assetRoot);
   return ColourConfig(std::move(impl));
 }
 

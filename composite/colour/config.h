@@ -12,9 +12,10 @@ class ColourConfig {
  public:
   // The spaces of namedSpaces(), and what shows them, without a file.
   static ColourConfig builtIn();
-  // Throws InputError for a file that is missing or no valid config.
-  //   by  who names it, for messages: "--ocio", "$OCIO"
-  static ColourConfig read(const std::string& path, const std::string& by);
+  // Throws InputError for a file that is missing or no valid config, and for one that names files elsewhere.
+  //   by         who names it, for messages: "--ocio", "$OCIO"
+  //   assetRoot  a folder whose files it may name besides those under its own; "" for none
+  static ColourConfig read(const std::string& path, const std::string& by, const std::string& assetRoot = "");
   ~ColourConfig();
   ColourConfig(ColourConfig&&) noexcept;
   ColourConfig& operator=(ColourConfig&&) noexcept;

@@ -21,6 +21,13 @@ std::string refusal(const char* flag, const std::string& found, const ColourConf
                      library.title());
 }
 
+// Whether the view shows numbers as they are.
+bool isRaw(const ocio::Config& config, const DisplayChoice& choice) {
+  const auto space =
+      config.getColorSpace(config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str()));
+  return space && space->isData();
+}
+
 // The choice with the config's own where nothing is said.
 DisplayChoice settled(const ColourConfig::Impl& library, DisplayChoice choice) {
   const ocio::Config& config = *library.config;
@@ -40,14 +47,17 @@ DisplayChoice settled(const ColourConfig::Impl& library, DisplayChoice choice) {
     found = found || choice.view == config.getView(display, i);
   }
   if (!found) throw UsageError(refusal("--view-transform", choice.view, library, views));
+  if (choice.look.empty()) return choice;
+  std::string looks;
+  for (int i = 0; i < config.getNumLooks(); ++i)
+    looks += (looks.empty() ? "" : ", ") + std::string(config.getLookNameByIndex(i));
+  if (!config.getLook(choice.look.c_str())) throw UsageError(refusal("--look", choice.look, library, looks));
+  if (isRaw(config, choice))
+    throw UsageError(
+        fmt::format("--look: found '{}' with the view {}, expected another view: it shows numbers as they "
+                    "are",
+                    choice.look, choice.view));
   return choice;
-}
-
-// Whether the view shows numbers as they are.
-bool isRaw(const ocio::Config& config, const DisplayChoice& choice) {
-  const auto space =
-      config.getColorSpace(config.getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str()));
-  return space && space->isData();
 }
 
 ocio::ConstCPUProcessorRcPtr processorFor(const ColourConfig::Impl& library, const DisplayChoice& choice,
@@ -59,7 +69,15 @@ ocio::ConstCPUProcessorRcPtr processorFor(const ColourConfig::Impl& library, con
   } else {
     const KnownSpace known = library.known();
     steps->appendTransform(matrixTransform(known.fromRec709 * glm::inverse(space.fromRec709) * exposure));
+    if (!choice.look.empty()) {
+      ocio::LookTransformRcPtr look = ocio::LookTransform::Create();
+      look->setSrc(known.name.c_str());
+      look->setDst(known.name.c_str());
+      look->setLooks(choice.look.c_str());
+      steps->appendTransform(look);
+    }
     ocio::DisplayViewTransformRcPtr shown = ocio::DisplayViewTransform::Create();
+    shown->setLooksBypass(!choice.look.empty());
     shown->setSrc(known.name.c_str());
     shown->setDisplay(choice.display.c_str());
     shown->setView(choice.view.c_str());
@@ -83,7 +101,8 @@ DisplayTransform::DisplayTransform(const ColourConfig& config, const DisplayChoi
     throw InputError(fmt::format("{}: display {}, view {}: {}", config.library().title(), chosen.display, chosen.view,
                                  oneLine(error.what())));
   }
-  title_ = fmt::format("display {}, view {}, exposure {:g}", chosen.display, chosen.view, chosen.exposure);
+  title_ = fmt::format("display {}, view {}, {}exposure {:g}", chosen.display, chosen.view,
+                       chosen.look.empty() ? "" : "look " + chosen.look + ", ", chosen.exposure);
 }
 
 DisplayTransform::~DisplayTransform() = default;

@@ -10,11 +10,12 @@ namespace pellucid {
 struct DisplayChoice {
   std::string display, view;  // "": the config's first
   double exposure = 0.0;      // stops
+  std::string look = {};      // in the place of the view's own; "": the view's
 };
 
 class DisplayTransform {
  public:
-  // Throws UsageError for a display or a view that the config does not have.
+  // Throws UsageError for a display, a view or a look that the config does not have.
   //   space  of the pictures
   DisplayTransform(const ColourConfig& config, const DisplayChoice& choice, const ColourSpace& space);
   ~DisplayTransform();

@@ -29,8 +29,8 @@ void checkColours(const ColourRequest& request) {
   if (request.config.empty() && !isAuto(request)) builtInSpace(request.workingSpace);
 }
 
-WorkingSpace::WorkingSpace(const ColourRequest& request) {
-  if (!request.config.empty()) config_ = ColourConfig::read(request.config, request.configBy);
+WorkingSpace::WorkingSpace(const ColourRequest& request, const std::string& assetRoot) {
+  if (!request.config.empty()) config_ = ColourConfig::read(request.config, request.configBy, assetRoot);
   if (!isAuto(request)) asked_ = config_ ? config_->space(request.workingSpace) : builtInSpace(request.workingSpace);
 }
 

@@ -11,7 +11,8 @@ void checkColours(const ColourRequest& request);
 class WorkingSpace {
  public:
   // Reads the config, where one is named. Throws what ColourConfig throws.
-  explicit WorkingSpace(const ColourRequest& request);
+  //   assetRoot  a folder whose files the config may name besides those under its own
+  WorkingSpace(const ColourRequest& request, const std::string& assetRoot);
   // By --working-space, else by the file's chromaticities, the config's rules for files, the preset, the config's rule
   // for all others.
   //   stated  what the file says of itself

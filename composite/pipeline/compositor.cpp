@@ -7,13 +7,18 @@
 #include <utility>
 
 #include "composite/antialias.h"
+#include "composite/pipeline/cheapest.h"
+#include "composite/pipeline/default_weight.h"
+#include "composite/pipeline/drawn_probes.h"
 #include "composite/pipeline/fit.h"
 #include "composite/pipeline/foliage_step.h"
 #include "composite/pipeline/held_out_planes.h"
 #include "composite/pipeline/memory_picture.h"
+#include "composite/pipeline/method_file.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/pass_picture.h"
+#include "composite/pipeline/refusals.h"
 #include "composite/pipeline/sums.h"
 #include "composite/pipeline/weight_file.h"
 #include "gbuffer/errors.h"
@@ -28,9 +33,10 @@ bool sameLight(const Request& a, const Request& b) {
 }
 
 // Whether a power of depth needs to know where the layers begin.
-bool asksDepths(const SumsRequest& sums) {
+bool asksDepths(const Request& request) {
+  const SumsRequest& sums = request.sums;
   const DepthWeight* row = sums.weight ? depthWeightOf(sums.weight->kind) : nullptr;
-  return !sums.weightReference && (sums.fitWeight || (row && row->reference == WeightReference::depth));
+  return !sums.weightReference && (fitsWeight(request) || (row && row->reference == WeightReference::depth));
 }
 
 // The beauty as shadows leave it, for a file of planes; empty where they changed nothing.
@@ -87,6 +93,7 @@ struct Compositor::Run {
 Compositor::Compositor(const Request& request, std::function<void(const std::string&)> sink)
     : journal_(std::move(sink)), device_(request.device) {
   validate(request);
+  validate(methodByFile(request));
   shot_ = loadShot(request.shot, meetsRays(request), journal_);
   facts_ = factsOf(*shot_);
 }
@@ -99,9 +106,10 @@ Compositor::~Compositor() {
 }
 
 Plan Compositor::plan(const Request& request) const {
-  validate(request);
-  const Request weighed = weighedByFile(request);
-  if (asksDepths(weighed.sums) && !knowsDepths_) {
+  const Request taken = methodByFile(request);
+  validate(taken);
+  const Request weighed = weighedByFile(taken);
+  if (asksDepths(weighed) && !knowsDepths_) {
     addLayerDepths(*shot_, facts_);
     knowsDepths_ = true;
   }
@@ -160,8 +168,10 @@ Compositor::Run Compositor::prepare(const Request& request) {
   if (pass) placeOccluders(request.foliage, run.pass, *pass, *run.lighting->picture.gbuffer, shot_->camera, journal_);
   if (run.plan.fitsWeight) {
     RunCounts unused;
-    const PaintContext context{run.plan, *shot_, run.lighting->picture, *run.sources, device_, journal_, unused};
-    run.pass.weight = run.plan.pass.weight = fittedWeight(context, run.pass);
+    const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+    PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), edges.get(), pass, shot_->camera);
+    const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
+    run.pass.weight = run.plan.pass.weight = fittedWeight(context, moving, run.pass);
   }
   return run;
 }
@@ -195,6 +205,49 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& ru
 
 Result Compositor::run(const Request& request) {
   const Device::Turn turn(device_);
+  const Request taken = methodByFile(request);
+  if (const auto* cheap = std::get_if<PaintCheapest>(&taken.paint)) return cheapest(taken, cheap->tolerance);
+  return painted(taken, 0.0);
+}
+
+Choice Compositor::probed(const Run& run, double tolerance) {
+  const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), edges.get(), triangles(), shot_->camera);
+  RunCounts unused;
+  const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
+  return journal_.time("probe method", [&] {
+    DrawnProbes probes(context, moving, run.pass);
+    Choice choice;
+    choice.tolerance = tolerance;
+    choice.layers = probes.layers();
+    choice.onProbes = probes.brokenPart(run.pass.weight, tolerance);
+    return choice;
+  });
+}
+
+Result Compositor::cheapest(const Request& request, double tolerance) {
+  Request sums = bySums(request);
+  const Run run = prepare(sums);
+  Choice choice = probed(run, tolerance);
+  Stages asked = std::exchange(journal_.stages, Stages());
+  Result result;
+  if (sumsMayDo(choice)) {
+    setWeight(sums, run.plan.pass.weight);
+    result = painted(sums, tolerance);
+    choice.measured = result.counts.tolerance.measured;
+  }
+  if (!sumsDo(choice)) {
+    for (const auto& [name, seconds] : result.stages.seconds()) asked.add("left: " + name, seconds);
+    result = painted(byTruth(request), 0.0);
+  }
+  for (const auto& [name, seconds] : asked.seconds()) result.stages.add(name, seconds);
+  result.choice = choice;
+  result.plan.methodReason = reasonOf(choice);
+  journal_.note("--method auto: " + reasonOf(choice));
+  return result;
+}
+
+Result Compositor::painted(const Request& request, double holdTo) {
   const Run run = prepare(request);
   Result result;
   result.plan = run.plan;
@@ -205,13 +258,14 @@ Result Compositor::run(const Request& request) {
   const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
   for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
   if (!anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);
-  if (request.measure) {
+  if (request.measure || holdTo > 0.0) {
     Journal truth = journal_.beside();
     RunCounts unused;
     const Image<glm::vec4> exact = compose(paint(truthOf(run.plan), run.pass, run, truth, unused), gbuffer).rgba;
-    result.error = measureError(result.picture.rgba, exact);
-    if (const auto* within = run.plan.as<PaintWithin>())
-      result.counts.tolerance.measured = brokenPart(result.picture.rgba, exact, within->tolerance);
+    if (request.measure) result.error = measureError(result.picture.rgba, exact);
+    const auto* within = run.plan.as<PaintWithin>();
+    if (const double tolerance = within ? within->tolerance : holdTo; tolerance > 0.0)
+      result.counts.tolerance.measured = brokenPart(result.picture.rgba, exact, tolerance);
     for (const auto& [name, seconds] : truth.stages.seconds()) journal_.stages.add("truth: " + name, seconds);
   }
   result.layers = veilLayers(request.layers, result.veil);
@@ -237,7 +291,8 @@ shading::WeightSettings Compositor::fitWeight(Request request) {
   return prepare(request).plan.pass.weight;
 }
 
-RunCounts Compositor::accumulate(const Request& request, const std::function<void(PassPlanes&&)>& each) {
+RunCounts Compositor::accumulate(const Request& asked, const std::function<void(PassPlanes&&)>& each) {
+  const Request request = paintsBy<PaintSorted>(asked) ? bySums(asked) : asked;
   if (shot_->deepOpaque) expectPlacesHold(request);
   const Device::Turn turn(device_);
   const Run run = prepare(request);
@@ -310,8 +365,7 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
 }
 
 std::map<std::string, std::string> Compositor::attributes(const Result& result) const {
-  std::map<std::string, std::string> attributes{{kMethodAttribute, result.plan.method},
-                                                {kWeightAttribute, weightText(result.plan.pass.weight)}};
+  std::map<std::string, std::string> attributes = methodAttributes(result.plan);
   const ColourSpace& space = shot_->opaque.space;
   if (!space.isRec709()) attributes["pellucid:workingSpace"] = space.name;
   return attributes;

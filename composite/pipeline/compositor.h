@@ -66,6 +66,11 @@ class Compositor {
   const std::vector<EdgePixel>& edges();                     // of the picture
   std::unique_ptr<EdgePasses> edgePasses(const Plan& plan);  // null where the plan takes no edge apart
   Run prepare(const Request& request);
+  // By one method.
+  //   holdTo  tolerance to measure the picture by; 0: none
+  Result painted(const Request& request, double holdTo);
+  Result cheapest(const Request& request, double tolerance);
+  Choice probed(const Run& run, double tolerance);
   PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, int pass, const Run& run,
                         const LitPicture& picture, const Request& request, RunCounts& counts);
   Veil paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal, RunCounts& counts);

@@ -11,8 +11,8 @@
 namespace pellucid {
 namespace {
 
-// Some thousand probes fix a mean error to about a percent; of layers at low resolution, which are drawn for every try,
-// fewer passes have to do.
+// Some thousand probes with layers fix a mean error to about a percent; of layers at low resolution, which are drawn
+// for every try, fewer passes have to do.
 constexpr std::size_t kProbes = 16384;
 constexpr int kMostPasses = 4, kMostLowPasses = 2;
 
@@ -47,45 +47,113 @@ class TexelMixer : public Mixer {
   std::optional<ChosenMethod> method_;
 };
 
-}  // namespace
-
-DrawnProbes::DrawnProbes(const PaintContext& context, const PassSettings& sample)
-    : context_(context), grid_(context.picture.gbuffer->data, probesOf(context.plan)) {
-  const int probed = passesProbed(context.plan);
-  for (int i = 0; i < probed; ++i) passes_.push_back(passOf(sample, i * context.plan.passes / probed));
+// Over the channels, too, and without what a background that is not finite makes.
+double meanSize(const std::vector<glm::dvec3>& colours) {
+  double sum = 0.0;
+  std::size_t known = 0;
+  for (const glm::dvec3& colour : colours) {
+    const double size = std::abs(colour.r) + std::abs(colour.g) + std::abs(colour.b);
+    if (!std::isfinite(size)) continue;
+    sum += size;
+    ++known;
+  }
+  return sum / (3.0 * static_cast<double>(std::max<std::size_t>(known, 1)));
 }
 
-DrawnProbes::Pass DrawnProbes::passOf(const PassSettings& sample, int number) {
+}  // namespace
+
+DrawnProbes::DrawnProbes(const PaintContext& context, PassPicture& moving, const PassSettings& sample)
+    : context_(context), moving_(moving), grid_(context.picture.gbuffer->data, probesOf(context.plan)) {
+  placeProbes(sample);
+  const int probed = passesProbed(context.plan);
+  std::vector<Gathered> all;
+  for (int i = 0; i < probed; ++i) all.push_back(gathered(sample, i * context.plan.passes / probed));
+  if (!touchesAll()) {
+    std::vector<std::uint8_t> kept(count(), 0);
+    for (const Gathered& pass : all) pass.drawn.mark(kept);
+    grid_.keep(kept);
+    for (Gathered& pass : all) {
+      pass.drawn.keep(kept);
+      if (pass.split) pass.split->keep(kept);
+    }
+  }
+  for (const Gathered& pass : all) passes_.push_back(passOf(pass));
+}
+
+// Closer together where layers touch few of the pixels, so that as many probes have something to tell.
+void DrawnProbes::placeProbes(const PassSettings& sample) {
+  if (touchesAll() || grid_.cell() == 1) return;
+  const Gathered first = gathered(sample, 0);
+  std::vector<std::uint8_t> touched(count(), 0);
+  first.drawn.mark(touched);
+  const auto found = static_cast<std::size_t>(std::count(touched.begin(), touched.end(), 1));
+  constexpr std::size_t kMostPixels = std::size_t{1} << 30;
+  const std::size_t wanted = found == 0 ? kMostPixels : probesOf(context_.plan) * count() / found;
+  if (wanted > 2 * probesOf(context_.plan)) grid_ = ProbeGrid(context_.picture.gbuffer->data, wanted);
+}
+
+DrawnProbes::Gathered DrawnProbes::gathered(const PassSettings& sample, int number) {
+  const PassSettings own = samplePass(sample, number, context_.plan.passes);
+  moving_.moveTo(own.sample, number);
+  Gathered made{own, number, listed(own, VolumeRule::midDepth), std::nullopt};
+  if (context_.plan.deepFiles) made.split.emplace(listed(own, VolumeRule::split));
+  return made;
+}
+
+DrawnProbes::Pass DrawnProbes::passOf(const Gathered& from) {
   const GBuffer& gbuffer = *context_.picture.gbuffer;
+  moving_.moveTo(from.sample.sample, from.number);
   Pass pass;
-  pass.sample = samplePass(sample, number, context_.plan.passes);
-  pass.number = number;
-  pass.drawn = listed(pass.sample, VolumeRule::midDepth);
-  pass.truth = truthOf(pass);
+  pass.sample = from.sample;
+  pass.number = from.number;
+  for (const glm::ivec2& place : grid_.places())
+    pass.weight.push_back(context_.picture.passWeight ? context_.picture.passWeight->at(place.x, place.y) : 1.0f);
+  pass.drawn = from.drawn.finish();
+  pass.truth = truthOf(from, pass);
   if (passes_.empty()) depths_ = depthsIn(pass);
   const Fog* fog = pass.sample.fog.get();
   if (fog && ofSums())
     pass.fog.emplace(*fog, gbuffer, pass.sample.sample, grid_.places(), pass.drawn.solid);
   else if (fog)
     pass.drawn = withFog(*fog, gbuffer, pass.sample.sample, pass.drawn, grid_.places());
-  if (hasLow() && ofSums())
-    pass.view =
-        lowViewOf(gbuffer, solidsOf(*context_.sources.triangles(), fullResolutionPart(context_.plan, pass.sample)),
-                  context_.shot.camera, context_.plan.lowResolution);
+  if (hasLow() && ofSums()) listLow(pass);
   return pass;
 }
 
-FragmentLists DrawnProbes::listed(const PassSettings& sample, VolumeRule rule) const {
+ProbeLists DrawnProbes::listed(const PassSettings& sample, VolumeRule rule) const {
   PassSettings probed = fullResolutionPart(context_.plan, sample);
   probed.probeCell = grid_.cell();
   probed.fog = nullptr;  // the probes alone are marched
   ProbeLists lists(grid_);
   context_.sources.each({probed, context_.picture, rule}, [&](const FragmentLists& part) { lists.add(part); });
-  return lists.finish();
+  return lists;
 }
 
-std::vector<glm::dvec3> DrawnProbes::truthOf(const Pass& pass) const {
-  FragmentLists lists = context_.plan.deepFiles ? listed(pass.sample, VolumeRule::split) : pass.drawn;
+void DrawnProbes::listLow(Pass& pass) const {
+  const GBuffer& gbuffer = *context_.picture.gbuffer;
+  TransparentPass& triangles = *context_.sources.triangles();
+  pass.view = lowViewOf(gbuffer, solidsOf(triangles, fullResolutionPart(context_.plan, pass.sample)),
+                        context_.shot.camera, context_.plan.lowResolution);
+  const DrawnOver over(triangles, *pass.view, gbuffer, context_.shot.camera);
+  triangles.fragments(lowResolutionPart(pass.sample), [&](const FragmentLists& lists) { pass.low.push_back(lists); });
+}
+
+// What lowSums() draws, from the lists.
+OitPlanes DrawnProbes::lowSumsOf(const Pass& pass, const PassSettings& sample) const {
+  Plan floats = context_.plan;
+  PassSettings part = sample;
+  if (floats.isPublished()) {
+    floats.tier = Tier::float32;
+    part.normalisation = shading::PLD_NORMALISE_SPECTRAL;
+  }
+  PublishedClamps unused;
+  OitPlanes planes = emptySums(floats, part, pass.view->gbuffer.display, pass.view->gbuffer.data);
+  for (const FragmentLists& lists : pass.low) foldInto(floats, lists, part, planes, unused);
+  return planes;
+}
+
+std::vector<glm::dvec3> DrawnProbes::truthOf(const Gathered& from, const Pass& pass) const {
+  FragmentLists lists = from.split ? from.split->finish() : pass.drawn;
   if (pass.sample.fog)
     lists = withFog(*pass.sample.fog, *context_.picture.gbuffer, pass.sample.sample, lists, grid_.places());
   if (hasLow()) {
@@ -98,7 +166,7 @@ std::vector<glm::dvec3> DrawnProbes::truthOf(const Pass& pass) const {
   return shown(veil);
 }
 
-Veil DrawnProbes::veilOf(const Pass& pass, const shading::WeightSettings& weight) const {
+Veil DrawnProbes::veilOf(const Pass& pass, const shading::WeightSettings& weight) {
   PassSettings sample = pass.sample;
   sample.weight = weight;
   return ofSums() ? veilOfSums(pass, sample) : veilOfLists(pass, sample);
@@ -109,16 +177,16 @@ Veil DrawnProbes::veilOfSums(const Pass& pass, const PassSettings& sample) const
   PublishedClamps unused;
   OitPlanes planes = emptySums(context_.plan, sample, window, window);
   foldInto(context_.plan, pass.drawn, sample, planes, unused);
-  if (pass.view)
-    addLowResolution(lowSums(context_, *pass.view, sample), *pass.view, sample.sample, grid_.places(), planes, unused);
+  if (pass.view) addLowResolution(lowSumsOf(pass, sample), *pass.view, sample.sample, grid_.places(), planes, unused);
   if (pass.fog) pass.fog->addTo(planes, unused);
   return resolve(planes, context_.plan.resolve);
 }
 
-Veil DrawnProbes::veilOfLists(const Pass& pass, const PassSettings& sample) const {
+Veil DrawnProbes::veilOfLists(const Pass& pass, const PassSettings& sample) {
   const ChosenMethod method = methodOf(context_.plan);
   FragmentLists lists;
   if (hasLow()) {
+    moving_.moveTo(sample.sample, pass.number);
     PassStatistics unused;
     TexelMixer mixer(method);
     lists = lowLayersOf(context_, sample, pass.number, mixer, unused).among(pass.drawn, grid_.places());
@@ -139,24 +207,47 @@ std::vector<glm::dvec3> DrawnProbes::shown(const Veil& veil) const {
   return pictures;
 }
 
-double DrawnProbes::errorOf(const shading::WeightSettings& weight, std::size_t passes) const {
+std::vector<glm::dvec3> DrawnProbes::differences(const shading::WeightSettings& weight, std::size_t passes) {
   std::vector<glm::dvec3> difference(count(), glm::dvec3(0.0));
   for (std::size_t k = 0; k < passes; ++k) {
     const std::vector<glm::dvec3> got = shown(veilOf(passes_[k], weight));
-    for (std::size_t i = 0; i < count(); ++i) difference[i] += got[i] - passes_[k].truth[i];
+    for (std::size_t i = 0; i < count(); ++i)
+      difference[i] += static_cast<double>(passes_[k].weight[i]) * (got[i] - passes_[k].truth[i]);
   }
-  double sum = 0.0;
-  std::size_t known = 0;
-  for (const glm::dvec3& d : difference) {
-    const double size = std::abs(d.r) + std::abs(d.g) + std::abs(d.b);
-    if (!std::isfinite(size)) continue;  // of a background that is not
-    sum += size;
-    ++known;
-  }
-  return sum / (3.0 * static_cast<double>(std::max<std::size_t>(known, 1) * passes));
+  return difference;
+}
+
+double DrawnProbes::errorOf(const shading::WeightSettings& weight, std::size_t passes) {
+  return meanSize(differences(weight, passes)) / static_cast<double>(passes);
+}
+
+double DrawnProbes::brokenPart(const shading::WeightSettings& weight, double tolerance) {
+  const auto passes = static_cast<double>(passes_.size());
+  const std::vector<glm::dvec3> difference = differences(weight, passes_.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      double truth = 0.0;
+      for (const Pass& pass : passes_) truth += static_cast<double>(pass.weight[i]) * pass.truth[i][c];
+      const double promised = tolerance * std::max(1.0, std::abs(truth) / passes);
+      const double off = std::abs(difference[i][c]) / passes;
+      if (std::isfinite(off) && off > 0.0) largest = std::max(largest, off / promised);
+    }
+  return largest;
+}
+
+double DrawnProbes::layers() const {
+  const double cell = grid_.cell(), pixels = static_cast<double>(context_.picture.gbuffer->beauty.size());
+  return static_cast<double>(passes_[0].drawn.fragments.size()) * cell * cell / pixels;
+}
+
+double DrawnProbes::rounding() const {
+  constexpr double kOfFloats = 0x1p-23;
+  return kOfFloats * meanSize(passes_[0].truth);
 }
 
 WeighedDepths DrawnProbes::depthsIn(const Pass& pass) const {
+  if (count() == 0) return {};
   const WeighedDepths found = depthsOf(pass.drawn);
   if (found.nearest > 0.0f) return found;
   // Layers of low resolution alone: powers weigh 1 where they begin.

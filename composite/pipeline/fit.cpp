@@ -17,18 +17,19 @@ std::string weightFlags(const shading::WeightSettings& weight) {
   return flags;
 }
 
-shading::WeightSettings fittedWeight(const PaintContext& context, const PassSettings& sample) {
+shading::WeightSettings fittedWeight(const PaintContext& context, PassPicture& moving, const PassSettings& sample) {
   std::size_t count = 0;
-  const WeightFit fit = context.journal.time("fit weight", [&] {
-    DrawnProbes probes(context, sample);
+  const WeightFit fit = context.journal.time(kFitStage, [&] {
+    DrawnProbes probes(context, moving, sample);
     count = probes.count();
     return fitWeight(
         sample.weight, probes.depths(),
         [&](const shading::WeightSettings& weight) { return probes.roughError(weight); },
-        [&](const shading::WeightSettings& weight) { return probes.error(weight); });
+        [&](const shading::WeightSettings& weight) { return probes.error(weight); }, probes.rounding());
   });
-  context.journal.note(fmt::format("--weight auto: mean error {:.4g} on {} probes; the same again: {}", fit.meanError,
-                                   count, weightFlags(fit.weight)));
+  context.journal.note(fmt::format("--weight auto{}: mean error {:.4g} on {} probes with layers; the same again: {}",
+                                   context.plan.weightReason.empty() ? "" : ", " + context.plan.weightReason,
+                                   fit.meanError, count, weightFlags(fit.weight)));
   return fit.weight;
 }
 

@@ -1,12 +1,16 @@
 // --weight auto: the weight that errs least on this shot.
 #pragma once
 #include "composite/pipeline/painter.h"
+#include "composite/pipeline/pass_picture.h"
 
 namespace pellucid {
 
-// Fits the weight to the sorted truth on probe pixels at their centres, and notes what was chosen.
+inline constexpr const char* kFitStage = "fit weight";  // of the journal
+
+// Fits the weight to the sorted truth on probe pixels, and notes what was chosen.
+//   moving  the picture of `context`
 //   sample  with the light
-shading::WeightSettings fittedWeight(const PaintContext& context, const PassSettings& sample);
+shading::WeightSettings fittedWeight(const PaintContext& context, PassPicture& moving, const PassSettings& sample);
 
 // The flags that ask for this weight, with every bit of it.
 std::string weightFlags(const shading::WeightSettings& weight);

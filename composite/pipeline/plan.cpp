@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "composite/antialias.h"
+#include "composite/pipeline/default_weight.h"
 #include "composite/pipeline/foliage_step.h"
 #include "gbuffer/accum.h"
 #include "gbuffer/errors.h"
@@ -28,7 +29,8 @@ double referenceOf(const ShotFacts& facts, double rangeNear) {
 }
 
 // The range comes from the request, else from the camera.
-shading::WeightSettings weightOf(const SumsRequest& sums, const ShotFacts& facts) {
+shading::WeightSettings weightOf(const Request& request, const ShotFacts& facts) {
+  const SumsRequest& sums = request.sums;
   shading::WeightSettings weight = sums.weight.value_or(PassSettings().weight);
   double rangeNear = facts.rangeNear > 0 ? facts.rangeNear : kNearDefault;
   double rangeFar = facts.rangeFar > rangeNear ? facts.rangeFar : rangeNear * kFarOverNear;
@@ -36,7 +38,7 @@ shading::WeightSettings weightOf(const SumsRequest& sums, const ShotFacts& facts
   weight.rangeNear = static_cast<float>(rangeNear);
   weight.rangeFar = static_cast<float>(rangeFar);
   const DepthWeight* row = depthWeightOf(weight.kind);
-  const bool overDepth = sums.fitWeight || (row && row->reference == WeightReference::depth);
+  const bool overDepth = fitsWeight(request) || (row && row->reference == WeightReference::depth);
   weight.reference = static_cast<float>(sums.weightReference.value_or(overDepth ? referenceOf(facts, rangeNear) : 1.0));
   return weight;
 }
@@ -47,7 +49,7 @@ PassSettings passOf(const Request& request, const ShotFacts& facts) {
   pass.filter = request.filter;
   pass.mask = request.mask;
   pass.scatter = request.scatter;
-  pass.weight = weightOf(request.sums, facts);
+  pass.weight = weightOf(request, facts);
   const bool published = request.tier == Tier::published;
   pass.tier = published ? SumsTier::published : SumsTier::float32;
   pass.normalisation = request.sums.normalisation.value_or(published ? shading::PLD_NORMALISE_PUBLISHED
@@ -128,7 +130,9 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   }
   plan.tier = request.tier;
   plan.pass = passOf(request, facts);
-  plan.fitsWeight = request.sums.fitWeight;
+  plan.fitsWeight = fitsWeight(request);
+  if (plan.fitsWeight && !request.sums.fitWeight)
+    plan.weightReason = "the default; planes of several shots that are to add up take one by --weight or --weight-from";
   plan.resolve.selfModulation = request.sums.selfModulation.value_or(plan.isPublished());
   plan.lookup = request.lookup;
   plan.resolvesOnDevice = request.resolveOnDevice;
@@ -189,7 +193,11 @@ std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
     lines.push_back(fmt::format("{:<12}{}", what, how));
   };
   say("method", plan.methodReason.empty() ? plan.method : fmt::format("{} ({})", plan.method, plan.methodReason));
-  say("painted by", nameOf(plan.route));
+  const auto* cheapest = plan.as<PaintCheapest>();
+  say("painted by", cheapest ? fmt::format("sums where no pixel errs by more than {} of the larger of 1 and the truth, "
+                                           "else the truth: probes and then every pixel decide",
+                                           cheapest->tolerance)
+                             : nameOf(plan.route));
   say("tier", plan.route == Route::lists && !plan.isExact() ? "double precision, pixel by pixel"
                                                             : std::string(tierRow(plan.tier).name));
   std::string layers = facts.hasScene ? fmt::format("{} triangles", facts.triangles) : "";
@@ -199,7 +207,9 @@ std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
   if (plan.lowResolution > 1) add(fmt::format("marked materials at 1/{} of the resolution", plan.lowResolution));
   say("layers", layers);
   if (plan.as<PaintSums>() || plan.as<PaintWithin>() || plan.as<PaintSystems>())
-    say("weight", plan.fitsWeight ? "fitted to the sorted truth on probe pixels" : weightText(plan.pass.weight));
+    say("weight", plan.fitsWeight ? fmt::format("fitted to the sorted truth on probe pixels{}",
+                                                plan.weightReason.empty() ? "" : " (" + plan.weightReason + ")")
+                                  : weightText(plan.pass.weight));
   say("picture", fmt::format("{}x{}, {}", facts.width, facts.height,
                              plan.heldOut ? "deep: each sample holds layers out" : "one depth a pixel"));
   say("passes", fmt::format("{}, each {}", plan.passes,

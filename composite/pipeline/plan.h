@@ -27,8 +27,9 @@ struct Plan {
   Paint paint = PaintSorted{};
   Route route = Route::lists;
   Tier tier = Tier::float32;
-  PassSettings pass;        // of every pass; the light, and where in the pixel, are still to come
-  bool fitsWeight = false;  // the weight above is only where the fit starts
+  PassSettings pass;         // of every pass; the light, and where in the pixel, are still to come
+  bool fitsWeight = false;   // the weight above is only where the fit starts
+  std::string weightReason;  // where nobody asked for the fit
   ResolveSettings resolve;
   LookupSettings lookup;
   bool resolvesOnDevice = false;

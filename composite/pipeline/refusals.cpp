@@ -3,26 +3,28 @@
 #include "shaders/weights.h"
 
 namespace pellucid {
-namespace {
 
-// Whose layers are weighed, and how they are averaged, by what the request says.
 bool weighs(const Request& request) {
   if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->weighs;
   if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
     return !systems->method || systems->method->method->weighs;
-  return paintsBy<PaintSums>(request) || paintsBy<PaintWithin>(request);
+  return paintsBy<PaintSums>(request) || paintsBy<PaintWithin>(request) || paintsBy<PaintCheapest>(request);
 }
+
+namespace {
+
+// How layers are averaged, by what the request says.
 bool normalises(const Request& request) {
   if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->normalises;
   if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
     return !systems->method || systems->method->method->normalises;
-  return paintsBy<PaintSums>(request) || paintsBy<PaintWithin>(request);
+  return paintsBy<PaintSums>(request) || paintsBy<PaintWithin>(request) || paintsBy<PaintCheapest>(request);
 }
 // The transparent pass's own sums: phenomenological, weighted and blended.
 bool hasSums(const Request& request) {
   if (const auto* listed = std::get_if<PaintListed>(&request.paint))
     return listed->method.name == "weighted" || listed->method.name == "blended";
-  return paintsBy<PaintSums>(request);
+  return paintsBy<PaintSums>(request) || paintsBy<PaintCheapest>(request);
 }
 bool takesExact(const Request& request) {
   if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->takesExact;

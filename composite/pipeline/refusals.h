@@ -18,6 +18,8 @@ struct Refusal {
 
 const std::vector<Refusal>& refusals();
 
+// Whether what paints weighs its layers.
+bool weighs(const Request& request);
 // Takes from a request what its method does not read: of settings that several requests share.
 void dropUnread(Request& request);
 // Where it is read: this weight, instead of fitting one.

@@ -36,12 +36,15 @@ struct PaintSamples {  // stochastic transparency
 struct PaintWithin {       // the sums where they are proved to be good enough, the truth elsewhere
   double tolerance = 0.0;  // times the larger of 1 and the value, every pixel and channel
 };
+struct PaintCheapest {     // the cheapest of the sums and the truth that lies within it on this shot
+  double tolerance = 0.0;  // as above
+};
 enum class SystemRule { file, node };
 struct PaintSystems {  // a pass for every input file or named node, sorted coarsely: WB13 section 3.4
   SystemRule rule = SystemRule::file;
   std::optional<ChosenMethod> method;  // within a system; empty: the weighted sum
 };
-using Paint = std::variant<PaintSums, PaintSorted, PaintListed, PaintSamples, PaintWithin, PaintSystems>;
+using Paint = std::variant<PaintSums, PaintSorted, PaintListed, PaintSamples, PaintWithin, PaintCheapest, PaintSystems>;
 
 // How layers are weighed and averaged, where the method reads it.
 struct SumsRequest {
@@ -150,6 +153,7 @@ struct Request {
   ShotRequest shot;
   std::string method = "over";  // as it was asked for: for headers and messages
   Paint paint = PaintSorted{};
+  std::string methodFrom;                 // picture whose header says method and weight, or ""
   std::optional<MethodDecision> decided;  // where nobody asked for a method: why it is this one
   Tier tier = Tier::float32;
   SumsRequest sums;

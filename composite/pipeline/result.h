@@ -27,6 +27,14 @@ struct RunCounts {
   void add(const RunCounts& view);             // what another view of the same picture took
 };
 
+// What --method auto found.
+struct Choice {
+  double tolerance = 0.0;          // E
+  double layers = 0.0;             // a pixel of the picture, on the probes
+  double onProbes = 0.0;           // largest error of the sums there, as a part of what E promises
+  std::optional<double> measured;  // the same on every pixel, where the sums were drawn
+};
+
 struct Result {
   Plan plan;          // as it was carried out: with the weight that was fitted
   Window dataWindow;  // of all planes
@@ -34,6 +42,7 @@ struct Result {
   Picture picture;                       // touched: changed by layers or by shadows
   std::vector<ExtraLayer> layers;        // `shadow`, and those that were asked for
   std::optional<ErrorStatistics> error;  // against the sorted truth, when it was asked for
+  std::optional<Choice> choice;          // of --method auto
   RunCounts counts;
   Stages stages;
   std::string device = "CPU";

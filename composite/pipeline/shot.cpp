@@ -220,7 +220,7 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   std::vector<std::string> deep;
   for (const std::string& path : request.inputs) (isExrName(path) ? deep : shot->geometry).push_back(path);
   shot->hasScene = !shot->geometry.empty();
-  const WorkingSpace colours(request.colour);
+  const WorkingSpace colours(request.colour, request.scene.assetRoot);
   SceneOptions options = request.scene;
   if (traced) options.streamBytes = 0;
   journal.time("read scene", [&] { shot->scene = loadScene(shot->geometry, options); });

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 
+#include "composite/pipeline/fit.h"
 #include "composite/pipeline/refusals.h"
 #include "composite/study/flip.h"
 #include "gbuffer/weight_text.h"
@@ -39,6 +40,7 @@ void describeRow(StudyRow& row, const StudyCandidate& candidate, const Result& r
   row.method = candidate.name;
   row.precision = candidate.precision;
   row.samples = candidate.request.passes;
+  if (weighs(candidate.request)) row.weight = weightText(result.plan.pass.weight);
   const Paint& paint = candidate.request.paint;
   if (const auto* samples = std::get_if<PaintSamples>(&paint)) {
     row.bits = stochasticBits(samples->settings);
@@ -62,8 +64,11 @@ Image<glm::vec3> colourOf(const Image<glm::vec4>& picture) {
 
 // Shaders compile on first use: untimed runs first, by the device's sums and by lists.
 void warmUp(Compositor& compositor, const Request& base) {
+  Request plain = base;
+  plain.sums = {};
+  plain.sums.weight = PassSettings().weight;
   for (const Tier tier : {Tier::float32, Tier::exact})
-    compositor.run(candidateOf(base, "phenomenological", PaintSums{}, 1, tier).request);
+    compositor.run(candidateOf(plain, "phenomenological", PaintSums{}, 1, tier).request);
 }
 
 // The candidates, the truth first: sorted, at the most passes.
@@ -101,17 +106,11 @@ std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vect
   return candidates;
 }
 
-StudyOutcome runStudy(Compositor& compositor, std::vector<StudyCandidate> candidates, const Request& base) {
+StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base) {
   Journal& journal = compositor.journal();
   StudyOutcome outcome;
   outcome.rows.resize(candidates.size());
   outcome.pictures.resize(candidates.size());
-  outcome.weight = weightText(compositor.plan(base).pass.weight);
-  if (base.sums.fitWeight) {
-    const shading::WeightSettings fitted = compositor.fitWeight(base);
-    outcome.weight = weightText(fitted);
-    for (StudyCandidate& candidate : candidates) setWeight(candidate.request, fitted);
-  }
   warmUp(compositor, base);
   Image<glm::vec4> truth;
   std::unique_ptr<FlipReference> flip;
@@ -121,8 +120,11 @@ StudyOutcome runStudy(Compositor& compositor, std::vector<StudyCandidate> candid
     StudyRow& row = outcome.rows[order[done]];
     compositor.light(candidate.request);  // which all rows of as many passes share: it is no cost of a method
     const Result result = compositor.run(candidate.request);
-    row.stages = result.stages.seconds();
-    for (const auto& [name, seconds] : row.stages) row.seconds += seconds;
+    for (const auto& [name, seconds] : result.stages.seconds()) {
+      if (name == kFitStage) continue;  // one for a sequence, by --weight-from
+      row.stages.emplace_back(name, seconds);
+      row.seconds += seconds;
+    }
     describeRow(row, candidate, result);
     if (done == 0) {
       truth = result.picture.rgba;

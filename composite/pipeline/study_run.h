@@ -26,9 +26,9 @@ std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vect
 struct StudyOutcome {
   std::vector<StudyRow> rows;              // in the order of the candidates
   std::vector<Image<glm::vec3>> pictures;  // of each
-  std::string weight;                      // that the weighed ones have
 };
-// Errors are against the sorted candidate of most passes. The picture of each is that of Compositor::run().
-StudyOutcome runStudy(Compositor& compositor, std::vector<StudyCandidate> candidates, const Request& base);
+// Errors are against the sorted candidate of most passes. The picture of each is that of Compositor::run(): where its
+// weight is fitted, to what it draws itself. Its seconds are without the fit.
+StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base);
 
 }  // namespace pellucid

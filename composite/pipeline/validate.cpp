@@ -14,7 +14,7 @@ namespace pellucid {
 
 void validate(const Request& request) {
   for (const Refusal& row : refusals())
-    if (row.applies(request))
+    if (request.methodFrom.empty() && row.applies(request))  // else the method is not known yet
       throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
   checkMemoryPicture(request.shot);

@@ -8,8 +8,9 @@ namespace pellucid {
 // Of what composite and accumulate have written: --method, and weightText() of the weight where it weighs.
 inline constexpr const char *kMethodAttribute = "pellucid:method", *kWeightAttribute = "pellucid:weight";
 
-// The request with what the header of SumsRequest::weightFrom says in its place; itself where there is none. Throws
-// InputError for a file that cannot be read, MeaningError for one that says no weight.
+// The request with what the header of SumsRequest::weightFrom says in its place; itself where there is none. Planes
+// that hold the request's out say it where it states no weight, so that both add up. Throws InputError for a file that
+// cannot be read, MeaningError for one that says no weight.
 Request weighedByFile(const Request& request);
 
 }  // namespace pellucid

@@ -90,10 +90,13 @@ class Fitter {
     return made;
   }
 
-  // Steps around the number, each half as long as the one before.
-  void refine(Try best) {
+  // Steps around the number on some probes, each half as long as the one before; where they end is tried on all.
+  void refine(const shading::WeightSettings& from, const WeightError& rough) {
+    Try best{from, 0.0};
     if (!numberOf(best.weight)) return;
     const DepthWeight* row = depthWeightOf(best.weight.kind);
+    best.error = rough(best.weight);
+    bool moved = false;
     for (float step = 0.32f; step > 0.005f; step *= 0.5f) {
       const Try centre = best;
       for (const float factor : {1.0f / (1.0f + step), 1.0f + step}) {
@@ -102,10 +105,13 @@ class Fitter {
         number *= factor;
         if (row->parameter && !row->perMetre) number = std::clamp(number, row->least, row->fitMost);
         if (row->readsRange && !(other.weight.rangeFar > other.weight.rangeNear)) continue;
-        other = attempt(other.weight);
-        if (isBetter(other, best)) best = other;
+        other.error = rough(other.weight);
+        if (!isBetter(other, best)) continue;
+        best = other;
+        moved = true;
       }
     }
+    if (moved) attempt(best.weight);
   }
 
  private:
@@ -131,7 +137,7 @@ WeighedDepths depthsOf(const FragmentLists& lists) {
 }
 
 WeightFit fitWeight(const shading::WeightSettings& given, const WeighedDepths& depths, const WeightError& rough,
-                    const WeightError& whole) {
+                    const WeightError& whole, double least) {
   WeightFit fit;
   fit.weight = given;
   if (!(depths.nearest > 0.0f)) return fit;
@@ -142,8 +148,10 @@ WeightFit fitWeight(const shading::WeightSettings& given, const WeighedDepths& d
     listRow(row, given, asListed);
     varyRow(row, given, depths, varied);
   }
-  std::vector<Try> best;
-  for (const shading::WeightSettings& weight : asListed) best.push_back(fitter.attempt(weight));
+  std::vector<Try> best{fitter.attempt(asListed[0])};
+  const Try first = best[0];
+  if (first.error <= least) return fit;  // nothing can be gained
+  for (std::size_t i = 1; i < asListed.size(); ++i) best.push_back(fitter.attempt(asListed[i]));
   const std::vector<Try> likely = tried(varied, rough);
   for (std::size_t i = 0; i < std::min(kKept, likely.size()); ++i) best.push_back(fitter.attempt(likely[i].weight));
   std::stable_sort(best.begin(), best.end(), isBetter);
@@ -152,7 +160,11 @@ WeightFit fitWeight(const shading::WeightSettings& given, const WeighedDepths& d
     if (refined.size() == kRefined) break;
     if (std::find(refined.begin(), refined.end(), one.weight.kind) != refined.end()) continue;
     refined.push_back(one.weight.kind);
-    fitter.refine(one);
+    fitter.refine(one.weight, rough);
+  }
+  if (!(fit.meanError < first.error - least)) {
+    fit.weight = first.weight;
+    fit.meanError = first.error;
   }
   std::stable_sort(fit.tried.begin(), fit.tried.end(),
                    [](const auto& a, const auto& b) { return a.second < b.second; });

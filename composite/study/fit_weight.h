@@ -32,7 +32,9 @@ struct WeightFit {
 //   given   the range, and the reference of powers
 //   rough   error on some probes
 //   whole   error on all of them
+//   least   what the picture's roundings are: a weight that gains no more over the table's first one is not taken, so
+//           that roundings choose nothing
 WeightFit fitWeight(const shading::WeightSettings& given, const WeighedDepths& depths, const WeightError& rough,
-                    const WeightError& whole);
+                    const WeightError& whole, double least = 0.0);
 
 }  // namespace pellucid

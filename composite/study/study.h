@@ -11,6 +11,7 @@ namespace pellucid {
 struct StudyRow {
   std::string method;
   std::string precision = "float";                          // tier of the sums
+  std::string weight = {};                                  // of methods that weigh, as headers have it
   int samples = 1;                                          // a pixel, --aa
   ErrorStatistics error;                                    // against the sorted truth at the most samples
   double relativeSquare = 0;                                // mean of (picture - truth)^2 / (truth^2 + 0.01)

@@ -18,7 +18,7 @@ Request Session::requestOf(const OneViewFlags& flags) const {
   Request request = flags.render.request();
   request.shot.memory = picture_;
   if (camera_) request.shot.camera = *camera_;
-  flags.preview.check(request.shot.colour);
+  flags.preview.check(request.shot.colour, request.shot.scene.assetRoot);
   return request;
 }
 
@@ -46,7 +46,8 @@ std::shared_ptr<const Outcome> Session::run(const Words& words) {
   outcome->facts = compositor_->facts();
   outcome->space = compositor_->shot().opaque.space.name;
   if (!flags.output.empty()) cli::say(compositor_->write(flags.output, outcome->result));
-  flags.preview.write(request.shot.colour, compositor_->shot().opaque.space, outcome->result.picture.rgba);
+  flags.preview.write(request.shot.colour, request.shot.scene.assetRoot, compositor_->shot().opaque.space,
+                      outcome->result.picture.rgba);
   outcome->notes = std::exchange(notes_, {});
   return outcome;
 }

@@ -76,14 +76,14 @@ void resolveInto(Resolved& made, const Words& words) {
   const cli::ResolveFlags& flags = parsed.flags;
   const auto threads = threadsOf(flags.run);
   const ColourRequest colour = flags.colour.request();
-  flags.preview.check(colour, true);
+  flags.preview.check(colour, flags.colour.assetRoot, true);
   Journal journal([](const std::string& note) { cli::say(note); });
   made.result = resolvePlanes(flags.request(), journal);
   const ResolvedPlanes& result = made.result;
   if (!flags.output.empty())
     cli::say(writeOver(flags.output, result.opaque, &result.camera, result.picture, result.layers,
                        {{"pellucid:method", result.info.method}}));
-  flags.preview.write(colour, result.opaque.space, result.picture.rgba);
+  flags.preview.write(colour, flags.colour.assetRoot, result.opaque.space, result.picture.rgba);
   made.stages = journal.stages;
 }
 
@@ -115,7 +115,7 @@ void studyInto(Studied& made, const Words& words) {
   Compositor compositor(base, [](const std::string& note) { cli::say(note); });
   if (!flags.folder.empty()) cli::makeFolder(flags.folder);
   made.outcome = runStudy(compositor, candidates, base);
-  if (!flags.folder.empty()) cli::writeStudy(flags.folder, flags.render.opaque, made.outcome);
+  if (!flags.folder.empty()) cli::writeStudy(flags.folder, compositor.shot().opaque, made.outcome);
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct Parsed {
     loosen(verb);
     if (inMemory) verb.remove_option(verb.get_option("opaque"));
     parseWords(verb, words);
+    if constexpr (requires { flags.model.apply(verb); }) flags.model.apply(verb);
   }
   Parsed(const Parsed&) = delete;
   Parsed& operator=(const Parsed&) = delete;

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "composite/pipeline/default_weight.h"
 #include "composite/pipeline/plan.h"
+#include "tests/pipeline/shot_files.h"
 
 namespace pellucid {
 namespace {
@@ -51,6 +53,48 @@ TEST(DefaultMethod, ThePlanTellsIt) {
             "method      phenomenological (--precision is given: it says what the sums are kept in)");
   ASSERT_EQ(plan.notes.size(), 1u);
   EXPECT_EQ(plan.notes[0], request.decided->note);
+}
+
+// Which requests fit their weight: where it is asked for, and the sums of a whole shot about whose weight nothing is
+// said.
+TEST(DefaultWeight, IsFittedWhereNothingIsStated) {
+  struct Row {
+    const char *name, *method;
+    void (*ask)(Request& request);
+    bool fits;
+  };
+  const Row rows[] = {
+      {"plain", "phenomenological", [](Request&) {}, true},
+      {"plain", "weighted", [](Request&) {}, true},
+      {"plain", "blended", [](Request&) {}, false},
+      {"plain", "front+tail", [](Request&) {}, false},
+      {"plain", "over", [](Request&) {}, false},
+      {"auto", "front+tail", [](Request& r) { r.sums.fitWeight = true; }, true},
+      {"weight", "phenomenological", [](Request& r) { r.sums.weight = PassSettings().weight; }, false},
+      {"range", "phenomenological",
+       [](Request& r) {
+         r.sums.weightRange = {1.0, 20.0};
+       },
+       false},
+      {"file", "phenomenological", [](Request& r) { r.sums.weightFrom = "first.exr"; }, false},
+      {"exact", "phenomenological", [](Request& r) { r.tier = Tier::exact; }, true},
+      {"published", "phenomenological", [](Request& r) { r.tier = Tier::published; }, false},
+      {"normalisation", "phenomenological", [](Request& r) { r.sums.normalisation = 0; }, true},
+      {"held out", "phenomenological", [](Request& r) { r.heldOutBy = {"near.exr"}; }, false},
+      {"tolerance", "phenomenological", [](Request& r) { r.paint = PaintWithin{0.1}; }, false},
+      {"systems", "phenomenological", [](Request& r) { r.paint = PaintSystems{}; }, false},
+  };
+  for (const Row& row : rows) {
+    Request request;
+    request.method = row.method;
+    request.paint = test::paintOf(row.method);
+    row.ask(request);
+    EXPECT_EQ(fitsWeight(request), row.fits) << row.method << ", " << row.name;
+    const ShotFacts facts;
+    const Plan plan = planFor(request, facts);
+    EXPECT_EQ(plan.fitsWeight, row.fits) << row.method << ", " << row.name;
+    EXPECT_EQ(plan.weightReason.empty(), !row.fits || request.sums.fitWeight) << row.method << ", " << row.name;
+  }
 }
 
 }  // namespace

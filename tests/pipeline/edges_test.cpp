@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "composite/pipeline/compositor.h"
@@ -183,6 +184,32 @@ TEST_F(Edges, PixelsKeepTheirBitsWhereNothingIsTransparent) {
       EXPECT_EQ(result.veil.transmission[i], glm::vec3(1.0f));
     }
   EXPECT_GT(untouched, kSize * kSize / 2);
+}
+
+// Every pixel of so small a picture is a probe, and all passes are probed: what the fit says that the picture errs by
+// is what it errs by, edges included. The panes cross before, behind and at the post, so that most of the error lies
+// there.
+TEST_F(Edges, TheFitOfTheWeightSeesThemAsThePassesDo) {
+  writePost(Edge{});
+  writeGlb(path("glass.glb"), {Quad{{-0.2f, -9, -9}, {0, 18, 0}, {1.5f, 0, 8}, unlit(0.9f, 0.1f, 0.1f, 0.6f)},
+                               Quad{{-0.3f, -9, -4}, {0, 18, 0}, {2.0f, 0, 0}, unlit(0.1f, 0.2f, 0.9f, 0.5f)},
+                               Quad{{-0.3f, -9, -5}, {0, 18, 0}, {2.5f, 0, 0}, unlit(0.1f, 0.9f, 0.2f, 0.5f)},
+                               Quad{{-0.3f, -9, -2}, {0, 18, 0}, {1.0f, 0, 0}, unlit(0.5f, 0.9f, 0.2f, 0.4f)}});
+  Request asked = request(4, "phenomenological");
+  asked.measure = true;
+  std::string said;
+  Compositor compositor(asked, [&](const std::string& note) { said += note + "\n"; });
+  const Result result = compositor.run(asked);
+  const auto at = said.find("--weight auto");
+  ASSERT_NE(at, std::string::npos) << said;
+  double mean = 0.0;
+  std::size_t probes = 0;
+  ASSERT_EQ(std::sscanf(said.c_str() + said.find("mean error", at), "mean error %lf on %zu", &mean, &probes), 2)
+      << said;
+  EXPECT_GT(probes, 100u);
+  EXPECT_GT(result.error->mean, 1e-4);
+  // Printed with four digits.
+  EXPECT_NEAR(mean * static_cast<double>(probes) / (kSize * kSize), result.error->mean, 1e-3 * result.error->mean);
 }
 
 TEST_F(Edges, TwoStepsGiveTheSameBits) {

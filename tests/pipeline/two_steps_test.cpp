@@ -159,6 +159,7 @@ TEST_F(TwoSteps, PlanesThatHoldEachOtherOutAddUp) {
     Request request = requestOf(files.flat, near);
     request.passes = passes;
     request.tier = Tier::exact;
+    request.sums.weight = PassSettings().weight;  // of all three: each would be fitted to its own scene
     accumulate(request, folder + "/near.exr");
     request.shot.inputs = {far};
     accumulate(request, folder + "/far-alone.exr");
@@ -175,6 +176,37 @@ TEST_F(TwoSteps, PlanesThatHoldEachOtherOutAddUp) {
         largest = std::max(largest, std::abs(static_cast<double>(added[i][c]) - static_cast<double>(whole[i][c])));
     EXPECT_LE(largest, 1e-6) << passes;  // sums of two files are rounded once more
   }
+}
+
+TEST_F(TwoSteps, PlanesTakeTheWeightOfThoseThatHoldThemOut) {
+  const std::string near = folder + "/near.glb", far = folder + "/far.glb";
+  std::vector<Quad> nearer, farther;  // each with another weight of its own
+  for (int i = 0; i < 4; ++i) {
+    const auto f = static_cast<float>(i);
+    nearer.push_back({{-1.0f, -1.0f, -2.0f - f}, {2, 0, 0}, {0, 2, 0}, unlit(0.9f - 0.2f * f, 0.1f, 0.1f, 0.6f)});
+    farther.push_back({{-3.0f, -3.0f, -6.0f - f}, {6, 0, 0}, {0, 6, 0}, unlit(0.1f, 0.2f * f, 0.1f, 0.2f)});
+  }
+  writeGlb(near, nearer);
+  writeGlb(far, farther);
+  Request request = requestOf(files.flat, near);
+  const auto weightIn = [&](const std::string& planes) {
+    return weightText(readPasses(folder + planes)[0].planes.info.weight);
+  };
+  accumulate(request, folder + "/near.exr");
+  request.shot.inputs = {far};
+  accumulate(request, folder + "/far-alone.exr");
+  EXPECT_NE(weightIn("/far-alone.exr"), weightIn("/near.exr"));
+  // The sentence says what to do.
+  try {
+    inTwoSteps(request, {folder + "/near.exr", folder + "/far-alone.exr"});
+    FAIL() << "planes of two weights were added";
+  } catch (const MeaningError& error) {
+    EXPECT_NE(std::string(error.what()).find("--weight-from"), std::string::npos) << error.what();
+  }
+  request.heldOutBy = {folder + "/near.exr"};
+  accumulate(request, folder + "/far.exr");
+  EXPECT_EQ(weightIn("/far.exr"), weightIn("/near.exr"));
+  inTwoSteps(request, {folder + "/near.exr", folder + "/far.exr"});
 }
 
 }  // namespace

@@ -183,6 +183,23 @@ TEST_F(Weights, AutoIsAsGoodAsTheBestListedAtEveryScale) {
   }
 }
 
+// Nothing stated is auto, in one step and in two; where one layer lies alone every weight draws the same, and the first
+// of the table stays.
+TEST_F(Weights, AutoIsTheDefaultOfSums) {
+  Request request = shotOf(1.0f);
+  const Result usual = drawn(request);
+  request.sums.fitWeight = true;
+  const Result fitted = drawn(request);
+  EXPECT_EQ(weightText(usual.plan.pass.weight), weightText(fitted.plan.pass.weight));
+  EXPECT_EQ(largestDifference(usual.picture.rgba, fitted.picture.rgba), 0.0);
+  EXPECT_NE(weightText(usual.plan.pass.weight), weightText(PassSettings().weight));
+  const std::string one = folder + "/one.glb";
+  writeGlb(one, {Quad{{-1.0f, -1.0f, -1.5f}, {2.0f, 0, 0}, {0, 2.0f, 0}, unlit(0.9f, 0.2f, 0.1f, 0.4f)}});
+  Request alone = shotOf(1.0f);
+  alone.shot.inputs = {one};
+  EXPECT_EQ(drawn(alone).plan.pass.weight.kind, shading::PLD_WEIGHT_EQ5);
+}
+
 TEST_F(Weights, GoFromFileToFile) {
   Request request = shotOf(1.0f);
   request.sums.fitWeight = true;
