@@ -4,8 +4,8 @@ namespace pellucid::cli {
 namespace {
 
 constexpr const char *kCommon = "Most used", *kInput = "Input", *kPicture = "Picture", *kMethod = "Method",
-                     *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air", *kQuality = "Quality",
-                     *kOutput = "Output", *kThresholds = "Thresholds", *kRunning = "Running";
+                     *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air", *kTime = "Time",
+                     *kQuality = "Quality", *kOutput = "Output", *kThresholds = "Thresholds", *kRunning = "Running";
 
 // In the order in which a group lists them.
 const std::vector<HelpRow> kRows{
@@ -77,6 +77,11 @@ const std::vector<HelpRow> kRows{
     {"--ao-radius", kLight, "METRES"},
     {"--fog-grid", kAir, "FILE.vdb[:GRID]"},
     {"--particle-light", kAir, "TEXELS"},
+    {"--frame", kTime, "N"},
+    {"--time", kTime, "SECONDS"},
+    {"--fps", kTime, "N"},
+    {"--time-offset", kTime, "SECONDS"},
+    {"--animation", kTime, "NAME"},
     {"--tolerance", kQuality, "E"},
     {"--low-res", kQuality, ""},
     {"--mask", kQuality, ""},
@@ -119,8 +124,8 @@ const std::vector<HelpRow> kRows{
 }  // namespace
 
 const std::vector<std::string>& helpGroups() {
-  static const std::vector<std::string> groups{kCommon, kInput,   kPicture, kMethod,     kScattering, kLight,
-                                               kAir,    kQuality, kOutput,  kThresholds, kRunning};
+  static const std::vector<std::string> groups{kCommon, kInput, kPicture, kMethod, kScattering, kLight,
+                                               kAir,    kTime,  kQuality, kOutput, kThresholds, kRunning};
   return groups;
 }
 

@@ -14,6 +14,7 @@
 #include "composite/methods/method.h"
 #include "composite/methods/stochastic.h"
 #include "composite/pipeline/default_method.h"
+#include "composite/pipeline/shot_time.h"
 #include "engine_bridge/scene/fitted_camera.h"
 #include "engine_bridge/scene/gltf.h"
 #include "engine_bridge/scene/pass_settings.h"
@@ -91,6 +92,7 @@ struct ShotRequest {
   std::vector<std::string> inputs;  // glTF, GLB and deep EXR with the transparent things
   ReadOptions read;
   SceneOptions scene;
+  ShotTime time;
   CameraChoice camera;
   SurroundingsChoice surroundings;
   ColourRequest colour;

@@ -18,6 +18,7 @@ void validate(const Request& request) {
       throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
   checkMemoryPicture(request.shot);
+  checkTime(request.shot.time);
   checkColours(request.shot.colour);
   checkShadows(request.shadows);
   checkFoliage(request.foliage);

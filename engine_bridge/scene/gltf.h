@@ -1,5 +1,7 @@
 // glTF 2.0 and GLB files to a Scene.
 #pragma once
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +17,41 @@ struct SceneOptions {
   // Not 0: triangles stay in their files until they are drawn, which only the transparent GL pass can do, and about so
   // many bytes of the files are in memory at once.
   std::size_t streamBytes = 0;
+  // Of the files' animations, which are then played; nothing leaves everything as the files store it.
+  std::optional<double> seconds;
+  std::string secondsBy;                // what says so, for a message: "41.75 s, frame 1002 (--frame)"
+  std::vector<std::string> animations;  // names, or "all"; empty: see Animations in animations.h
 };
 
 // Appends the files' contents in the order given. Throws InputError (missing file, missing texture, damaged buffer),
 // MeaningError (a required extension we do not know, by name), UsageError (--set names no material or key).
 Scene loadScene(const std::vector<std::string>& paths, const SceneOptions& options);
+
+// The same, of files that stay open as long as they have more to give: a scene that moves.
+class SceneFiles {
+ public:
+  // Loads them at options.seconds, as loadScene() does.
+  //   scene  empty; must outlive this, at the same place
+  SceneFiles(const std::vector<std::string>& paths, const SceneOptions& options, Scene& scene);
+  ~SceneFiles();
+  SceneFiles(const SceneFiles&) = delete;
+  SceneFiles& operator=(const SceneFiles&) = delete;
+
+  // Whether an animation is played; if not, nothing can be posed.
+  bool moves() const;
+  // Poses the scene anew, as it would have been loaded at that time. Textures, and primitives that no skin and no
+  // morph target moves, stay what they are, in the colour space that bringInto() has brought them into; everything else
+  // is read again, and waits for bringInto(). Throws what loadScene() throws.
+  // Returns the primitives that it has read again.
+  std::vector<int> pose(double seconds);
+
+ private:
+  struct File;
+  void expectNames() const;
+
+  SceneOptions options_;
+  Scene& scene_;
+  std::vector<std::unique_ptr<File>> files_;
+};
 
 }  // namespace pellucid

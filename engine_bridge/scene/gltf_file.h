@@ -31,6 +31,13 @@ class GltfFile {
   // The element of `array` that `reference` points at.
   JsonView item(const char* array, const JsonView& reference) const;
 
+  // Whether the document has a place for a value at this JSON pointer: everything but its last name is there, or is an
+  // object whose absence means defaults.
+  bool holds(const std::string& pointer) const;
+  // Puts a value there: a number, an array of several, or true and false where it is `visible`. What stands there must
+  // be of the same shape, or absent. Throws InputError. Views of the document do not survive it.
+  void put(const std::string& pointer, const std::vector<double>& values);
+
   // The bytes of a buffer view, checked against its buffer, unpacked when they are compressed. Buffers are mapped at
   // first use and kept.
   SharedBytes viewBytes(const JsonView& view);

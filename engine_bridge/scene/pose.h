@@ -1,5 +1,5 @@
-// Skins and morph targets, in the pose that the file stores: nodes where their transforms put them, weights of the
-// node, else of the mesh. Animations are not played.
+// Skins and morph targets, in the pose that the file's document states: nodes where their transforms put them, weights
+// of the node, else of the mesh. animations.h puts other poses there.
 #pragma once
 #include <glm/glm.hpp>
 #include <map>
@@ -15,6 +15,7 @@ struct Pose {
   std::vector<double> weights;     // one a morph target; empty where nothing is morphed
   std::vector<glm::dmat4> joints;  // the file's world from the mesh's bind pose, in its units; empty without a skin
   bool moves() const { return !weights.empty() || !joints.empty(); }
+  bool operator==(const Pose&) const = default;
 };
 
 // The poses of one file's nodes.

@@ -30,6 +30,9 @@ class PrimitiveReader {
   //   decode     even when streaming
   std::optional<Primitive> read(const JsonView& primitive, const Pose& pose, bool decode);
 
+  // Forgets what has been charged to the file: for another pose of it.
+  void startOver() { charged_ = 0; }
+
   // One note for each kind of thing that was left out or repaired in all primitives read so far.
   void noteCounts();
 

@@ -111,20 +111,23 @@ void convert(Primitive& primitive, const glm::dmat3& matrix) {
   for (Vertex& vertex : primitive.vertices) vertex.colour = withAlpha(matrix, vertex.colour);
 }
 
-void convert(Scene& scene, const glm::dmat3& matrix, GamutEdge& edge) {
+void convert(Scene& scene, const glm::dmat3& matrix, const std::vector<int>* primitives, GamutEdge& edge) {
   for (Material& material : scene.materials) convert(material, edge);
   for (Light& light : scene.lights) light.colour = edge(light.colour);
   for (Instance& instance : scene.instances)
     instance.colour = glm::vec4(edge(glm::vec3(instance.colour)), instance.colour.a);
-  for (Primitive& primitive : scene.primitives) convert(primitive, matrix);
+  if (!primitives)
+    for (Primitive& primitive : scene.primitives) convert(primitive, matrix);
+  else
+    for (const int number : *primitives) convert(scene.primitives[static_cast<std::size_t>(number)], matrix);
 }
 
 }  // namespace
 
-std::vector<std::string> bringInto(Scene& scene, const glm::dmat3& matrix) {
+std::vector<std::string> bringInto(Scene& scene, const glm::dmat3& matrix, const std::vector<int>* primitives) {
   GamutEdge edge(matrix);
   for (Texture& texture : scene.textures) edge.outside += convert(texture, matrix) ? 1 : 0;
-  if (matrix != glm::dmat3(1.0)) convert(scene, matrix, edge);
+  if (matrix != glm::dmat3(1.0)) convert(scene, matrix, primitives, edge);
   if (edge.outside == 0) return {};
   return {
       fmt::format("{} colours and textures of the glTF lie outside the picture's colour space and are brought to its "

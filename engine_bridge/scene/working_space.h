@@ -1,4 +1,5 @@
-// A scene's colours, which glTF has in linear Rec.709, brought into the space of the picture: once, after loading.
+// A scene's colours, which glTF has in linear Rec.709, brought into the space of the picture: once, after loading,
+// and again for what a pose has read anew.
 #pragma once
 #include "engine_bridge/scene/scene.h"
 
@@ -11,6 +12,8 @@ namespace pellucid {
 // do, is brought to its edge, which the notes say.
 //   matrix  linear Rec.709 to the picture's space, white to white; the identity changes no bit, but for textures that
 //           state a space of their own
-std::vector<std::string> bringInto(Scene& scene, const glm::dmat3& matrix);
+//   primitives  those that are not in it yet, of a scene that has been posed anew; null: all
+std::vector<std::string> bringInto(Scene& scene, const glm::dmat3& matrix,
+                                   const std::vector<int>* primitives = nullptr);
 
 }  // namespace pellucid
