@@ -47,6 +47,7 @@ Program buildProgram(const std::string& vertexStage, const std::string& fragment
   program.instanceColour = glGetUniformLocation(name, "instanceColour");
   program.instanceIdentity = glGetUniformLocation(name, "instanceIdentity");
   program.pointScale = glGetUniformLocation(name, "pointScale");
+  program.maskResolved = glGetUniformLocation(name, "maskResolved");
   program.turn = glGetUniformLocation(name, "turn");
   return program;
 }

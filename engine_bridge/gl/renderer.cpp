@@ -350,6 +350,7 @@ const Program& Renderer::programFor(int primitive, Output output) {
 void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
   const Program* program = nullptr;
   int boundMaterial = -1;
+  float maskResolved = 0.0f;
   for (const ChunkDraw& one : draws) {
     const Instance& instance = scene_.instances[one.instance];
     const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(instance.primitive)];
@@ -366,6 +367,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     if (boundMaterial != primitive.material) {
       boundMaterial = primitive.material;
       textures_.bind(material, settings_.filter, settings_.footprint);
+      maskResolved = textures_.maskResolved(material);
       glBindBufferRange(GL_UNIFORM_BUFFER, 1, materialBuffer_.name(),
                         static_cast<GLintptr>(static_cast<std::size_t>(boundMaterial) * materialStride_),
                         sizeof(MaterialBlock));
@@ -379,6 +381,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     glUniform1f(program->thicknessScale, placed.thicknessScale);
     glUniform4fv(program->instanceColour, 1, &instance.colour[0]);
     glUniform1f(program->pointScale, placed.thicknessScale * material.pointScale);
+    glUniform1f(program->maskResolved, maskResolved);
     glUniform1ui(program->instanceIdentity, instance.identity);
     const auto corners = static_cast<GLsizei>(one.triangles * 3);
     // The stage pulls its vertices: it needs all three of a triangle, and its number.

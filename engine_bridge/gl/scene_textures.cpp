@@ -8,12 +8,15 @@
 #include <stdexcept>
 
 #include "engine_bridge/scene/foliage.h"
+#include "engine_bridge/scene/mask_levels.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::gl {
 namespace {
 
-TexelRange rangeOf(const Image<glm::vec4>& texels) {
+TexelRange rangeOf(const pellucid::Texture& texture) {
+  const Image<glm::vec4>& texels = texture.texels;
+  if (texels.empty()) throw std::logic_error(texture.name + ": a texture without texels");
   TexelRange range{texels[0], texels[0]};
   for (std::size_t i = 1; i < texels.size(); ++i) {
     range.least = glm::min(range.least, texels[i]);
@@ -80,12 +83,14 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
   for (const Material& material : scene.materials) {
     if (material.transparent() == opaque) continue;
     const auto references = material.textures();
+    for (const TextureRef* reference : references)
+      if (const int index = reference->texture; index >= 0 && !ranges_.count(index))
+        ranges_.emplace(index, rangeOf(scene.textures.at(static_cast<std::size_t>(index))));
     for (std::size_t slot = 0; slot < references.size(); ++slot) {
       const Key key = keyOf(material, slot);
       if (key.texture < 0 || uploaded_.count(key)) continue;
       const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(key.texture));
       const Image<glm::vec4>& texels = texture.texels;
-      if (texels.empty()) throw std::logic_error(texture.name + ": a texture without texels");
       if (std::max(texels.width(), texels.height()) > largest)
         throw ResourceError(fmt::format("{}: texture of {}x{} texels: the GL device holds {} along an edge",
                                         texture.name, texels.width(), texels.height(), largest));
@@ -95,21 +100,17 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
       glTextureStorage2D(uploaded.texture.name(), std::bit_width(edge), GL_RGBA32F, texels.width(), texels.height());
       uploadLevel(uploaded.texture, 0, key.weighted ? weighted(texels) : texels);
       checkGl("uploading texture " + texture.name);
-      ranges_.emplace(key.texture, rangeOf(texels));
       uploaded_.emplace(key, std::move(uploaded));
     }
   }
 }
 
-// A ramp of alpha keeps its cut by averaging; scaled to some area of the whole texture, it would move.
-float SceneTextures::keptCut(const Material& material) {
+float SceneTextures::keptCut(const Material& material) const {
   const int index = material.baseColorTexture.texture;
   const float cut = index < 0 ? 0.0f : cutOfBase(material);
   if (!(cut > 0.0f)) return 0.0f;
-  auto known = masks_.find(index);
-  if (known == masks_.end())
-    known = masks_.emplace(index, measureMask(scene_.textures.at(static_cast<std::size_t>(index)).texels).binary).first;
-  return known->second ? cut : 0.0f;
+  const TexelRange range = ranges_.at(index);
+  return range.least.a < cut && range.most.a >= cut ? cut : 0.0f;
 }
 
 bool SceneTextures::weighs(const Material& material) {
@@ -128,11 +129,24 @@ SceneTextures::Key SceneTextures::keyOf(const Material& material, std::size_t sl
 std::vector<std::string> SceneTextures::defines(const Material& material, TextureFilter filter) {
   std::vector<std::string> defines;
   if (weighs(material)) defines.emplace_back("BASE_WEIGHTED");
-  const int base = material.baseColorTexture.texture;
-  if (material.alphaMode == AlphaMode::mask && base >= 0 &&
-      (filter != TextureFilter::mipmap || !hasLevels(scene_.textures[static_cast<std::size_t>(base)].minify)))
+  if (material.alphaMode != AlphaMode::mask || material.baseColorTexture.texture < 0) return defines;
+  if (!readsLevels(material, filter))
     defines.emplace_back("MASK_UNLEVELLED");
+  else if (keptCut(material) > 0.0f)
+    defines.emplace_back("MASK_LEVELLED");
   return defines;
+}
+
+bool SceneTextures::readsLevels(const Material& material, TextureFilter filter) const {
+  const auto base = static_cast<std::size_t>(material.baseColorTexture.texture);
+  return filter == TextureFilter::mipmap && hasLevels(scene_.textures[base].minify);
+}
+
+float SceneTextures::maskResolved(const Material& material) const {
+  const float cut = keptCut(material);
+  if (!(cut > 0.0f)) return 0.0f;
+  const auto found = uploaded_.lower_bound({material.baseColorTexture.texture, cut, false});
+  return found == uploaded_.end() ? 0.0f : static_cast<float>(found->second.resolved);
 }
 
 TexelRange SceneTextures::range(int index) const {
@@ -159,16 +173,21 @@ const Sampler& SceneTextures::samplerFor(const pellucid::Texture& texture, Textu
   return sampler;
 }
 
-// What a mask covers stays the same at every level; other textures are averaged.
+// Of a mask, those that hold its pattern cover what it covers; of other textures that are cut, they are plain means.
+// Coarser ones hold what the cut leaves.
 void SceneTextures::makeMipmaps(const Key& key, Uploaded& uploaded) {
   uploaded.mipmaps = true;
-  if (key.cut <= 0.0f) {
-    glGenerateTextureMipmap(uploaded.texture.name());
-    return;
-  }
-  const auto levels = coveragePreservingMips(scene_.textures[static_cast<std::size_t>(key.texture)].texels, key.cut);
-  for (std::size_t level = 1; level < levels.size(); ++level)
-    uploadLevel(uploaded.texture, static_cast<GLint>(level), key.weighted ? weighted(levels[level]) : levels[level]);
+  const pellucid::Texture& texture = scene_.textures[static_cast<std::size_t>(key.texture)];
+  const bool binary = key.cut > 0.0f && measureMask(texture.texels).binary;
+  if (!binary) glGenerateTextureMipmap(uploaded.texture.name());
+  if (key.cut <= 0.0f) return;
+  const MaskLevels mask = maskLevels(
+      binary ? coveragePreservingMips(texture.texels, key.cut) : averagedLevels(texture.texels), key.cut, texture);
+  uploaded.resolved = mask.resolved;
+  for (std::size_t level = binary ? 1 : static_cast<std::size_t>(mask.resolved) + 1; level < mask.levels.size();
+       ++level)
+    uploadLevel(uploaded.texture, static_cast<GLint>(level),
+                key.weighted ? weighted(mask.levels[level]) : mask.levels[level]);
   checkGl("uploading the mip levels of a mask");
 }
 

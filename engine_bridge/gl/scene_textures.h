@@ -26,6 +26,9 @@ class SceneTextures {
   void bind(const Material& material, TextureFilter filter, float footprint = 1.0f);
   // What shaders/gl/material.glsl has to know of how a material's textures are stored: defines.
   std::vector<std::string> defines(const Material& material, TextureFilter filter);
+  // The coarsest level of a material's base texture that is cut (scene/mask_levels.h), once it was bound with its
+  // levels; 0 for those without.
+  float maskResolved(const Material& material) const;
   // Of texture `index`; all 1 for -1, as a missing texture counts in a product.
   TexelRange range(int index) const;
 
@@ -35,22 +38,23 @@ class SceneTextures {
   struct Uploaded {
     Texture texture;
     bool mipmaps = false;  // made when a filter first asks for them
+    int resolved = 0;      // the coarsest of them that is cut
   };
   struct Key {
     int texture;
-    float cut;      // whose covered area its levels keep; 0 for none
+    float cut;      // that its levels are made for; 0 for none
     bool weighted;  // colours are times alpha
     auto operator<=>(const Key&) const = default;
   };
   bool weighs(const Material& material);  // its base colour is stored times its alpha
   Key keyOf(const Material& material, std::size_t slot);
-  // That cut for the base colour of a material that is cut out of a mask; 0 for others.
-  float keptCut(const Material& material);
+  bool readsLevels(const Material& material, TextureFilter filter) const;  // of its base colour
+  // That cut for the base colour of a material that it goes through; 0 for others.
+  float keptCut(const Material& material) const;
   void makeMipmaps(const Key& key, Uploaded& uploaded);
 
   const Scene& scene_;
   std::map<Key, Uploaded> uploaded_;
-  std::map<int, bool> masks_;                    // by texture: whether its finest level is binary
   std::map<std::pair<int, bool>, bool> weighs_;  // by texture, and whether every alpha passes
   std::map<int, TexelRange> ranges_;
   std::map<std::pair<Sampling, float>, Sampler> samplers_;  // and by footprint

@@ -50,11 +50,47 @@ float thicknessTexel() {
   return texture(thicknessTexture, uvOf(4)).g;
 }
 
-#ifdef MASK_UNLEVELLED
+#if defined(MASK_UNLEVELLED) || defined(MASK_LEVELLED)
 // Of the base texture, under this sample. Takes derivatives.
 float texelsHere() {
   vec2 at = uvOf(0) * vec2(textureSize(baseTexture, 0));
   return texelsAcross(dFdx(at), dFdy(at), footprint);
+}
+#endif
+
+#ifdef MASK_LEVELLED
+uniform float maskResolved;  // coarsest level of the base texture that is cut (engine_bridge/scene/mask_levels.h)
+
+struct PartlyCovered {
+  float coverage;  // [0,1]
+  vec3 colour;     // of the base texture
+};
+
+// The base texture at that level. The sampler's bias for the footprint counts for levels that are named, too.
+vec4 baseTexelAt(vec2 uv, float level) {
+  return textureLod(baseTexture, uv, level - log2(footprint));
+}
+
+// A sample beyond that level.
+//   dx, dy  of texture coordinates, from pixel to pixel
+//   factor  on the texture's alpha
+PartlyCovered partlyCovered(float texels, vec2 dx, vec2 dy, float factor) {
+  vec2 uv = uvOf(0);
+  float cutoff = material.interface_.w, left = cutLeft(levelsBeyond(texels, maskResolved));
+  vec4 texel = baseTexelAt(uv, maskResolved);
+  float alpha = factor * texel.a, rim = 0.0f;
+#ifdef MASK_SMOOTH
+  rim = footprint * left * (abs(factor * baseTexelAt(uv + dx, maskResolved).a - alpha) +
+                            abs(factor * baseTexelAt(uv + dy, maskResolved).a - alpha));
+  vec4 kept = factor >= cutoff ? baseTexelAt(uv, keptLevel(texels, maskResolved, footprint)) : vec4(0.0f);
+#else
+  vec4 kept = texel;
+  left = 1.0f;
+#endif
+  PartlyCovered sum;
+  sum.coverage = partialCoverage(maskCoverage(alpha, cutoff, rim), kept.a, left);
+  sum.colour = unweighted(kept + (texel - kept) * left).rgb;
+  return sum;
 }
 #endif
 
@@ -73,7 +109,7 @@ float coverageOf(float alpha) {
 #else
   float covered = 1.0f;
 #endif
-  return covered * material.covering.r;
+  return covered;
 }
 
 // After surfaceHere(). Unit, on the side of the eye.
@@ -116,12 +152,25 @@ Surface surfaceHere() {
 #ifdef VERTEX_COLOUR
   point.base *= vertexColour;
 #endif
+#ifdef MASK_LEVELLED
+  vec4 factor = point.base;
+#endif
 #ifdef BASE_TEXTURE
 #ifdef BASE_WEIGHTED
   point.base *= unweighted(texture(baseTexture, uvOf(0)));
 #else
   point.base *= texture(baseTexture, uvOf(0));
 #endif
+#endif
+  float covered = coverageOf(point.base.a);
+#ifdef MASK_LEVELLED
+  float texels = texelsHere();
+  vec2 dx = dFdx(uvOf(0)), dy = dFdy(uvOf(0));
+  if (levelsBeyond(texels, maskResolved) > 0.0f) {
+    PartlyCovered here = partlyCovered(texels, dx, dy, factor.a);
+    point.base.rgb = factor.rgb * here.colour;
+    covered = here.coverage;
+  }
 #endif
 #ifdef METALLIC_ROUGHNESS_TEXTURE
   vec4 metallicRoughness = texture(metallicRoughnessTexture, uvOf(1));
@@ -142,5 +191,5 @@ Surface surfaceHere() {
   // What enters on a front face leaves through a back face: counted once.
   if (gl_FrontFacing) attenuation = attenuationOf(material.volume.rgb, ratio);
 #endif
-  return surfaceOf(point, coverageOf(point.base.a), attenuation, isUnlit());
+  return surfaceOf(point, covered * material.covering.r, attenuation, isUnlit());
 }

@@ -27,3 +27,38 @@ PLD_FN float texelsAcross(vec2 dx, vec2 dy, float edge) {
 PLD_FN float rimLeft(float texels) {
   return clamp(2.0f - texels, 0.0f, 1.0f);
 }
+
+// How many mip levels a sample lies beyond the coarsest that holds a mask's pattern; above 0, what it sees is partly
+// covered.
+//   texels    texelsAcross, of the finest level
+//   resolved  that level
+PLD_FN float levelsBeyond(float texels, float resolved) {
+  return log2(max(texels, 1e-6f)) - resolved;
+}
+
+// Part of such a sample's coverage that the cut gives, at the level that holds it: all of it there, nothing from half a
+// level on. Both have the same mean, and so has every mixture.
+PLD_FN float cutLeft(float beyond) {
+  return clamp(1.0f - 2.0f * beyond, 0.0f, 1.0f);
+}
+
+// Samples of several passes lie irregularly: each takes texels twice its own width, or a pattern that repeats with the
+// pixels would be met at the same few places everywhere.
+const float PLD_MASK_REACH = 2.0f;
+
+// Mip level that holds what the cut leaves of a mask under such a sample.
+//   footprint  edge of the sample, 1 for the pixel's only one
+PLD_FN float keptLevel(float texels, float resolved, float footprint) {
+  float reach = footprint < 1.0f ? PLD_MASK_REACH : 1.0f;
+  return max(log2(max(reach * texels, 1e-6f)), resolved + 1.0f);
+}
+
+const float PLD_MASK_FULL = 0.99999f;  // a filtered mean of nothing but 1 may come out this far below it
+
+//   atSample  coverage by the cut
+//   kept      of the level that holds what the cut leaves
+//   left      cutLeft
+PLD_FN float partialCoverage(float atSample, float kept, float left) {
+  precise float covered = kept + (atSample - kept) * left;
+  return covered >= PLD_MASK_FULL ? 1.0f : covered;
+}

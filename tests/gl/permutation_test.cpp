@@ -71,6 +71,11 @@ TEST(Permutations, EverySurfaceCompilesAndLinks) {
           surface);
     ++turn;
   }
+  // How a mask's texture is stored is said apart (SceneTextures::defines).
+  for (const char* edge : {"MASK_SMOOTH", "MASK_HARD"})
+    for (const char* levels : {"MASK_LEVELLED", "MASK_UNLEVELLED"})
+      build(gl::outputDefines(gl::Output::list, frame, sumsOf(shading::PLD_WEIGHT_EQ5, 0)),
+            {edge, levels, "BASE_TEXTURE", "BASE_WEIGHTED"});
   std::printf("%zu surfaces in %.1f s\n", all.size(),
               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
