@@ -70,7 +70,7 @@ package(dev libpellucid-c-dev libdevel "order-independent transparency behind an
   "The header, pkg-config and CMake files of the C library." DEPENDS "libpellucid-c${PROJECT_VERSION_MAJOR} ${same}")
 package(rooms libpellucid-rooms-dev libdevel "compositor of Pellucid as C++ libraries"
   "Static libraries, headers, pkg-config and CMake files of the whole\ncompositor and its parts."
-  DEPENDS "libpellucid-c-dev ${same}" libdeflate-dev libdraco-dev libegl-dev libembree-dev libepoxy-dev libfmt-dev
+  DEPENDS "libpellucid-c-dev ${same}" "pellucid ${same}" libdeflate-dev libdraco-dev libegl-dev libembree-dev libepoxy-dev libfmt-dev
     libglm-dev libimath-dev libmeshoptimizer-dev libopencolorio-dev libopenexr-dev libopenimageio-dev libopenvdb-dev
     libtbb-dev nlohmann-json3-dev pkg-config zlib1g-dev)
 if(TARGET pellucid_python)
