@@ -33,8 +33,7 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion ${CMAKE_BINARY_DIR}/
   DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program OPTIONAL)
 if(TARGET pellucid_python)
   set(python_folder lib/python3/dist-packages)
-  install(TARGETS pellucid_python pellucid_images pellucid_grids pellucid_plots
-    LIBRARY DESTINATION ${python_folder}/pellucid COMPONENT python)
+  install(TARGETS pellucid_python LIBRARY DESTINATION ${python_folder}/pellucid COMPONENT python)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/python/pellucid DESTINATION ${python_folder} COMPONENT python
     PATTERN __pycache__ EXCLUDE PATTERN "*.so" EXCLUDE)
 endif()

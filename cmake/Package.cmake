@@ -76,7 +76,7 @@ package(rooms libpellucid-rooms-dev libdevel "compositor of Pellucid as C++ libr
 if(TARGET pellucid_python)
   package(python python3-pellucid python "composite transparency onto NumPy arrays and EXR files"
     "The compositor of Pellucid as a Python module: functions of files and of\nNumPy arrays, with every flag of the program as a keyword."
-    SHLIBDEPS DEPENDS python3 "python3 (>= 3.11~)" "python3 (<< 3.12)" python3-numpy ${gl})
+    SHLIBDEPS DEPENDS "pellucid ${same}" python3 "python3 (>= 3.11~)" "python3 (<< 3.12)" python3-numpy ${gl})
 endif()
 # Debian has its man pages compressed.
 install(CODE [[

@@ -1,6 +1,6 @@
 """Packs the built module as a wheel, with nothing but Python's own library.
 
-    python3 python/wheel.py build/python dist      # dist/pellucid-VERSION-cp311-cp311-linux_x86_64.whl
+    python3 python/wheel.py build/python build/lib/pellucid dist      # dist/pellucid-VERSION-cp311-cp311-linux_x86_64.whl
 """
 
 import base64
@@ -26,7 +26,7 @@ def metadata(version):
             "Requires-Dist: numpy\n")
 
 
-def main(built, folder):
+def main(built, parts, folder):
     sys.path.insert(0, built)
     import pellucid  # the one that was built
 
@@ -35,6 +35,7 @@ def main(built, folder):
     package = pathlib.Path(built) / "pellucid"
     files = {f"pellucid/{path.name}": path.read_bytes()
              for path in sorted(package.iterdir()) if path.is_file()}
+    files.update({f"pellucid/parts/{path.name}": path.read_bytes() for path in sorted(pathlib.Path(parts).glob("*.so"))})
     files[f"{info}/METADATA"] = metadata(version).encode()
     files[f"{info}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: python/wheel.py\nRoot-Is-Purelib: false\nTag: {tag()}\n"
                               ).encode()

@@ -15,7 +15,7 @@ PACKER = pathlib.Path(__file__).parents[2] / "python" / "wheel.py"
 
 
 def packed(folder):
-    ended = subprocess.run([sys.executable, PACKER, BUILT, folder], capture_output=True, text=True, check=True)
+    ended = subprocess.run([sys.executable, PACKER, BUILT, BUILT.parent / "lib" / "pellucid", folder], capture_output=True, text=True, check=True)
     return pathlib.Path(ended.stdout.strip())
 
 
