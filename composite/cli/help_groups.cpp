@@ -1,15 +1,11 @@
 #include "composite/cli/help_groups.h"
 
-#include <memory>
-
-#include "composite/cli/help_text.h"
-
 namespace pellucid::cli {
 namespace {
 
 constexpr const char *kCommon = "Most used", *kInput = "Input", *kPicture = "Picture", *kMethod = "Method",
-                     *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air", *kQuality = "Quality",
-                     *kOutput = "Output", *kThresholds = "Thresholds", *kRunning = "Running";
+                     *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air", *kTime = "Time",
+                     *kQuality = "Quality", *kOutput = "Output", *kThresholds = "Thresholds", *kRunning = "Running";
 
 // In the order in which a group lists them.
 const std::vector<HelpRow> kRows{
@@ -79,6 +75,11 @@ const std::vector<HelpRow> kRows{
     {"--ao-radius", kLight, "METRES"},
     {"--fog-grid", kAir, "FILE.vdb[:GRID]"},
     {"--particle-light", kAir, "TEXELS"},
+    {"--frame", kTime, "N"},
+    {"--time", kTime, "SECONDS"},
+    {"--fps", kTime, "N"},
+    {"--time-offset", kTime, "SECONDS"},
+    {"--animation", kTime, "NAME"},
     {"--tolerance", kQuality, "E"},
     {"--low-res", kQuality, ""},
     {"--mask", kQuality, ""},
@@ -120,30 +121,13 @@ const std::vector<HelpRow> kRows{
 }  // namespace
 
 const std::vector<std::string>& helpGroups() {
-  static const std::vector<std::string> groups{kCommon, kInput,   kPicture, kMethod,     kScattering, kLight,
-                                               kAir,    kQuality, kOutput,  kThresholds, kRunning};
+  static const std::vector<std::string> groups{kCommon, kInput, kPicture, kMethod, kScattering, kLight,
+                                               kAir,    kTime,  kQuality, kOutput, kThresholds, kRunning};
   return groups;
 }
 
 const std::vector<HelpRow>& helpRows() {
   return kRows;
-}
-
-const HelpRow* helpRow(const std::string& flag) {
-  for (const HelpRow& row : kRows)
-    if (flag == row.flag) return &row;
-  return nullptr;
-}
-
-void setUpHelp(CLI::App& app) {
-  const auto text = std::make_shared<HelpText>();
-  app.formatter(text);
-  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) {
-    verb->formatter(text);
-    for (CLI::Option* option : verb->get_options())
-      for (const std::string& name : option->get_lnames())
-        if (const HelpRow* row = helpRow("--" + name)) option->group(row->group);
-  }
 }
 
 }  // namespace pellucid::cli

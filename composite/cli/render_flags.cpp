@@ -12,6 +12,7 @@ void addCommon(CLI::App& verb, RenderFlags& flags, bool allViews) {
   verb.add_option("scenes", flags.inputs, "glTF, GLB or deep EXR with the transparent things")->required();
   flags.read.addTo(verb, allViews);
   flags.scene.addTo(verb);
+  flags.time.addTo(verb);
   flags.shadow.addTo(verb);
   flags.fog.addTo(verb);
   verb.add_option("--particle-light", flags.particleLight,
@@ -114,6 +115,7 @@ Request RenderFlags::request() const {
   request.shot.inputs = inputs;
   request.shot.read = read.options();
   scene.into(request);
+  request.shot.time = time.time();
   paintInto(request);
   scatter.into(request);
   lookup.into(request);

@@ -12,6 +12,7 @@
 #include "composite/cli/scatter_flags.h"
 #include "composite/cli/shadow_flags.h"
 #include "composite/cli/stochastic_flags.h"
+#include "composite/cli/time_flags.h"
 
 namespace pellucid::cli {
 
@@ -35,6 +36,7 @@ struct RenderFlags {
   std::vector<std::string> inputs, layers;
   ReadFlags read;
   SceneFlags scene;
+  TimeFlags time;
   MethodFlags method;
   ScatterFlags scatter;
   LookupFlags lookup;

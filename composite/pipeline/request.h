@@ -13,6 +13,7 @@
 #include "composite/methods/method.h"
 #include "composite/methods/stochastic.h"
 #include "composite/pipeline/default_method.h"
+#include "composite/pipeline/shot_time.h"
 #include "engine_bridge/scene/gltf.h"
 #include "engine_bridge/scene/pass_settings.h"
 #include "gbuffer/medium.h"
@@ -82,6 +83,7 @@ struct ShotRequest {
   std::vector<std::string> inputs;  // glTF, GLB and deep EXR with the transparent things
   ReadOptions read;
   SceneOptions scene;
+  ShotTime time;
   CameraChoice camera;
   SurroundingsChoice surroundings;
   ColourRequest colour;

@@ -16,6 +16,7 @@ void validate(const Request& request) {
     if (row.applies(request))
       throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
+  checkTime(request.shot.time);
   checkColours(request.shot.colour);
   checkShadows(request.shadows);
   checkFoliage(request.foliage);

@@ -1,0 +1,89 @@
+#include "gbuffer/header_time.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace pellucid {
+namespace {
+
+constexpr double kUsualFramesPerSecond = 24.0;
+constexpr double kMostFramesPerSecond = 1e6;
+constexpr std::uint32_t kDropFrame = 1u << 6;  // of TimeCode::timeAndFlags, as the bits of TV60 have it
+
+template <class T>
+std::optional<T> valueOf(const ExrAttribute& attribute, const char* type, std::size_t at = 0) {
+  T value;
+  if (attribute.type != type || attribute.bytes.size() < at + sizeof value) return std::nullopt;
+  std::memcpy(&value, attribute.bytes.data() + at, sizeof value);
+  return value;
+}
+
+const ExrAttribute* find(const ExrDocument& document, const char* name) {
+  for (const ExrPart& part : document.parts)
+    if (const auto found = part.attributes.find(name); found != part.attributes.end()) return &found->second;
+  return nullptr;
+}
+
+std::optional<int> wholeNumber(const ExrAttribute& attribute) {
+  if (attribute.type == "string") {
+    int value = 0;
+    const char* end = attribute.bytes.data() + attribute.bytes.size();
+    const auto [next, error] = std::from_chars(attribute.bytes.data(), end, value);
+    if (error != std::errc() || next != end) return std::nullopt;
+    return value;
+  }
+  if (const auto value = valueOf<std::int32_t>(attribute, "int")) return *value;
+  if (const auto value = valueOf<float>(attribute, "float"))
+    if (std::abs(*value) < 1e6f && *value == std::floor(*value)) return static_cast<int>(*value);
+  return std::nullopt;
+}
+
+std::optional<double> rateOf(const ExrAttribute& attribute) {
+  const auto above = valueOf<std::int32_t>(attribute, "rational", 0);
+  const auto below = valueOf<std::uint32_t>(attribute, "rational", 4);
+  if (!above || !below || *above <= 0 || *below == 0) return std::nullopt;
+  const double rate = static_cast<double>(*above) / static_cast<double>(*below);
+  return rate < kMostFramesPerSecond ? std::optional(rate) : std::nullopt;
+}
+
+// Two binary coded digits; nothing where one of them is none.
+std::optional<int> digits(std::uint32_t bits, unsigned first, std::uint32_t tensMask) {
+  const std::uint32_t ones = bits >> first & 0xfu, tens = bits >> (first + 4) & tensMask;
+  if (ones > 9 || tens > 9) return std::nullopt;
+  return static_cast<int>(tens * 10 + ones);
+}
+
+std::optional<int> framesOf(const ExrAttribute& attribute, double rate) {
+  const auto bits = valueOf<std::uint32_t>(attribute, "timecode");
+  if (!bits) return std::nullopt;
+  const auto frames = digits(*bits, 0, 0x3u), seconds = digits(*bits, 8, 0x7u);
+  const auto minutes = digits(*bits, 16, 0x7u), hours = digits(*bits, 24, 0x3u);
+  if (!frames || !seconds || !minutes || !hours || *seconds > 59 || *minutes > 59 || *hours > 23) return std::nullopt;
+  const int whole = static_cast<int>(std::lround(rate));  // 24 for 23.976: the code counts frames, not time
+  const int allMinutes = 60 * *hours + *minutes;
+  int count = (60 * allMinutes + *seconds) * whole + *frames;
+  // Two numbers of frames are left out each minute but every tenth, and four at 60 a second.
+  if (*bits & kDropFrame) count -= (whole >= 50 ? 4 : 2) * (allMinutes - allMinutes / 10);
+  return count;
+}
+
+}  // namespace
+
+HeaderTime headerTimeOf(const ExrDocument& document) {
+  HeaderTime time;
+  if (const ExrAttribute* rate = find(document, "framesPerSecond")) time.framesPerSecond = rateOf(*rate);
+  if (const ExrAttribute* frame = find(document, "Frame")) {
+    time.frame = wholeNumber(*frame);
+    if (time.frame) time.frameBy = "attribute Frame";
+  }
+  if (time.frame) return time;
+  if (const ExrAttribute* code = find(document, "timeCode")) {
+    time.frame = framesOf(*code, time.framesPerSecond.value_or(kUsualFramesPerSecond));
+    if (time.frame) time.frameBy = "attribute timeCode";
+  }
+  return time;
+}
+
+}  // namespace pellucid
