@@ -1,6 +1,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/over_frames.h"
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
@@ -15,20 +16,22 @@ struct AccumulateFlags {
   std::vector<std::string> heldOutBy;
   RenderFlags render;
   RunFlags run;
+  SequenceFlags sequence;
 };
 
-void accumulate(const AccumulateFlags& flags) {
+void accumulate(const AccumulateFlags& flags, const FrameRun& frame, const std::shared_ptr<KeptWork>& kept) {
   const Threads threads(flags.run.threads);
-  Request request = flags.render.request();
+  Request request = frame.weighed(flags.render.request());
   request.heldOutBy = flags.heldOutBy;
-  Compositor compositor(request, [](const std::string& note) { say(note); });
+  Compositor compositor(
+      request, [](const std::string& note) { say(note); }, frame.watcher(), kept);
   std::vector<PassPlanes> passes;
   const RunCounts counts =
       compositor.accumulate(request, [&](PassPlanes&& pass) { passes.push_back(std::move(pass)); });
   if (request.foliage.rule == FoliageRule::apart && passes[0].rims.empty())
     say("no cut-out leaf waits for its occlusion: the planes carry no rims");
   Stages& stages = compositor.journal().stages;
-  stages.time("write", [&] { writePasses(flags.output, passes); });
+  stages.time("write", [&] { writePasses(flags.output, passes, frame.attributes); });
   nlohmann::json report{{"output", flags.output}};
   reportSpace(compositor.shot().opaque.space, report);
   reportRun(flags.run, stages, counts, compositor.device(), report);
@@ -50,7 +53,13 @@ void addAccumulate(CLI::App& app) {
       ->allow_extra_args(false);
   verb->add_option("-o,--output", flags->output, "EXR of planes to write")->required();
   flags->run.addTo(*verb);
-  verb->callback([flags] { accumulate(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    const auto kept = std::make_shared<KeptWork>(flags->render.scene.device);
+    VerbRun run{flags->run.json, [&](const FrameRun& frame) { accumulate(*flags, frame, kept); }};
+    run.fits = [&] { return fitsOwnWeight(flags->render.request()); };
+    overFrames(*verb, flags->sequence, run);
+  });
 }
 
 }  // namespace pellucid::cli

@@ -4,7 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/compare_table.h"
 #include "composite/cli/messages.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/verbs.h"
 #include "composite/compare/compare.h"
 #include "composite/compare/page.h"
@@ -17,6 +19,7 @@ struct CompareFlags {
   std::string a, b, html, metadata = "fail";
   CompareSettings settings;
   bool json = false;
+  SequenceFlags sequence;
 };
 
 const char* wordFor(Verdict verdict) {
@@ -58,16 +61,18 @@ nlohmann::json jsonOf(const CompareReport& report) {
           {"layers", layers}};
 }
 
-void compareVerb(const CompareFlags& flags) {
+//   flicker  of the frames so far
+void compareVerb(const CompareFlags& flags, FrameRun& frame, TemporalError& flicker) {
   CompareSettings settings = flags.settings;
   settings.metadata = flags.metadata == "fail"   ? MetadataRule::fail
                       : flags.metadata == "warn" ? MetadataRule::warn
                                                  : MetadataRule::ignore;
   const ExrDocument a = readExr(flags.a), b = readExr(flags.b);
   const CompareReport report = compareExr(a, b, settings);
+  if (frame.inSequence()) frame.summary = summaryOf(report, flicker.next(a, b, settings));
   if (flags.json)
     fmt::print("{}\n", jsonOf(report).dump(2));
-  else
+  else if (!frame.inSequence() || report.verdict != Verdict::same)
     fmt::print("{}", reportText(report, flags.a, flags.b));
   if (!flags.html.empty()) writePage(flags.html, comparePage(a, b, report));
   if (report.verdict == Verdict::failed) throw Error(1, fmt::format("{} and {} differ", flags.a, flags.b));
@@ -114,7 +119,19 @@ void addCompare(CLI::App& app) {
   verb->add_flag("--finite", settings.finiteOnly, "Fail on NaN and infinity even where both files hold the same");
   verb->add_flag("--json", flags->json, "Print the report as JSON");
   verb->add_option("--html", flags->html, "Write a self-contained page that shows both pictures and their difference");
-  verb->callback([flags] { compareVerb(*flags); });
+  flags->sequence.addTo(*verb, {.sideBySide = false, .resumes = false});
+  verb->callback([verb, flags] {
+    TemporalError flicker;
+    const auto compareFrame = [&](FrameRun& frame) {
+      try {
+        compareVerb(*flags, frame, flicker);
+      } catch (const Error& error) {
+        if (error.exitCode() != 1) flicker.forget();  // a frame is missing
+        throw;
+      }
+    };
+    overFrames(*verb, flags->sequence, {flags->json, compareFrame, printCompareTable});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/over_frames.h"
 #include "composite/cli/preview_flags.h"
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
@@ -21,8 +22,12 @@ struct CompositeFlags {
   RenderFlags render;
   PreviewFlags preview;
   RunFlags run;
+  SequenceFlags sequence;
   bool explain = false;
 };
+
+// What a process keeps from one frame to the next.
+using Kept = std::shared_ptr<KeptWork>;
 
 std::vector<std::string> viewsOf(const std::string& path) {
   const ExrDocument document = readExr(path);
@@ -35,7 +40,7 @@ std::vector<std::string> viewsOf(const std::string& path) {
 // Extra layers of the second view and further ones are named after it where they would lie in one part.
 std::vector<std::string> writeViews(const std::string& path, const std::vector<std::string>& views,
                                     const std::vector<std::unique_ptr<Compositor>>& compositors,
-                                    const std::vector<Result>& results) {
+                                    const std::vector<Result>& results, const FrameRun& frame) {
   std::vector<PictureOfView> pictures;
   std::vector<std::vector<ExtraLayer>> renamed(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -46,14 +51,15 @@ std::vector<std::string> writeViews(const std::string& path, const std::vector<s
     pictures.push_back(
         {file, results[i].picture.rgba, results[i].picture.touched, beside ? renamed[i] : results[i].layers});
   }
-  return writePictures(path, pictures, compositors[0]->attributes(results[0]));
+  return writePictures(path, pictures, frame.with(compositors[0]->attributes(results[0])));
 }
 
-void composite(const CompositeFlags& flags) {
+void composite(const CompositeFlags& flags, const FrameRun& frame, const Kept& kept) {
   const Threads threads(flags.run.threads);
-  const Request request = flags.render.request();
+  const Request request = frame.weighed(flags.render.request());
   flags.preview.check(request.shot.colour);
-  Compositor compositor(request, [](const std::string& note) { say(note); });
+  Compositor compositor(
+      request, [](const std::string& note) { say(note); }, frame.watcher(), kept);
   if (flags.explain) {
     for (const std::string& line : describe(compositor.plan(request), compositor.facts())) fmt::print("{}\n", line);
     return;
@@ -62,13 +68,14 @@ void composite(const CompositeFlags& flags) {
   nlohmann::json report{{"output", flags.output}, {"method", request.method}};
   reportSpace(compositor.shot().opaque.space, report);
   reportError(flags.run, result, report);
-  say(result.stages.time("write", [&] { return compositor.write(flags.output, result); }));
+  // The picture last, whose header says that all is done.
   flags.preview.write(request.shot.colour, compositor.shot().opaque.space, result.picture.rgba);
+  say(result.stages.time("write", [&] { return compositor.write(flags.output, result, frame.attributes); }));
   reportRun(flags.run, result.stages, result.counts, result.device, report);
 }
 
 // Every view of the file with its own camera, and all of them in one file again.
-void compositeViews(const CompositeFlags& flags) {
+void compositeViews(const CompositeFlags& flags, const FrameRun& frame, const Kept& kept) {
   const Threads threads(flags.run.threads);
   if (flags.preview.wanted())
     throw UsageError("--preview: found it with --view all, expected one view: a PNG shows one picture");
@@ -78,8 +85,9 @@ void compositeViews(const CompositeFlags& flags) {
   nlohmann::json report{{"output", flags.output}, {"views", nlohmann::json::array()}};
   for (const std::string& view : views) {
     say("view " + view);
-    const Request request = flags.render.requestOfView(view, views);
-    compositors.push_back(std::make_unique<Compositor>(request, [](const std::string& note) { say(note); }));
+    const Request request = frame.weighed(flags.render.requestOfView(view, views));
+    compositors.push_back(std::make_unique<Compositor>(
+        request, [](const std::string& note) { say(note); }, frame.watcher(), kept));
     Compositor& compositor = *compositors.back();
     if (compositor.shot().deepOpaque)
       throw UsageError(request.shot.opaque + ": --view: found all with a deep picture, expected one view of it");
@@ -101,7 +109,7 @@ void compositeViews(const CompositeFlags& flags) {
     for (const auto& [name, seconds] : result.stages.seconds()) stages.add(name, seconds);
     if (&result != &results.front()) counts.add(result.counts);
   }
-  say(stages.time("write", [&] { return writeViews(flags.output, views, compositors, results); }));
+  say(stages.time("write", [&] { return writeViews(flags.output, views, compositors, results, frame); }));
   reportRun(flags.run, stages, counts, results.front().device, report);
 }
 
@@ -119,7 +127,16 @@ void addComposite(CLI::App& app) {
   flags->preview.addTo(*verb);
   verb->add_flag("--explain", flags->explain, "Print what would be done and why, and stop before anything is drawn");
   flags->run.addTo(*verb);
-  verb->callback([flags] { flags->render.read.view == "all" ? compositeViews(*flags) : composite(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    const Kept kept = std::make_shared<KeptWork>(flags->render.scene.device);
+    VerbRun run{flags->run.json, [&](const FrameRun& frame) {
+                  flags->render.read.view == "all" ? compositeViews(*flags, frame, kept)
+                                                   : composite(*flags, frame, kept);
+                }};
+    run.fits = [&] { return fitsOwnWeight(flags->render.request()); };
+    overFrames(*verb, flags->sequence, run);
+  });
 }
 
 }  // namespace pellucid::cli

@@ -7,6 +7,7 @@
 
 #include "composite/cli/budget.h"
 #include "composite/cli/colour_flags.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/preview_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
@@ -21,6 +22,7 @@ struct FlattenFlags {
   RunFlags run;
   ColourFlags colour;
   PreviewFlags preview;
+  SequenceFlags sequence;
 };
 
 // Over black, as the file says its colours.
@@ -55,22 +57,24 @@ ExtraLayer layersOf(const FlatPicture& flat) {
   return layer;
 }
 
-void flattenVerb(const FlattenFlags& flags) {
+void flattenVerb(const FlattenFlags& flags, const FrameRun& frame) {
   const Threads threads(flags.run.threads);
   flags.preview.check(flags.colour.request(), true);
   Stages stages;
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
   const std::uint64_t most = parseBudget(flags.budget) / 32;
-  const FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most, flags.view); });
+  const FlatPicture flat = stages.time("flatten", [&] {
+    return flattenDeep(flags.files, most, flags.view, [&](double share) { frame.voice->stage("flatten", share); });
+  });
   say(flat.notes);
   if (flat.oddities.notFinite) note("{} deep samples are not numbers and were skipped", flat.oddities.notFinite);
   if (flat.oddities.outOfRange)
     note("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
-  stages.time("write", [&] {
-    say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half",
-                    &flat.like));
-  });
   writePreview(flags, flat);
+  stages.time("write", [&] {
+    say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, frame.attributes, nullptr,
+                    flags.type == "half", &flat.like));
+  });
   nlohmann::json report{{"output", flags.output}, {"samples", flat.samples}};
   RunCounts counts;
   counts.fragments = flat.samples;
@@ -93,7 +97,10 @@ void addFlatten(CLI::App& app) {
   flags->preview.addTo(*verb);
   flags->colour.addConfigTo(*verb);
   flags->run.addTo(*verb);
-  verb->callback([flags] { flattenVerb(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    overFrames(*verb, flags->sequence, {flags->run.json, [&](const FrameRun& frame) { flattenVerb(*flags, frame); }});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -1,5 +1,6 @@
 // The two renderers behind `gbuffer`.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "composite/cli/colour_flags.h"
 #include "composite/cli/options.h"
 #include "composite/cli/preview_flags.h"
+#include "composite/cli/sequence_flags.h"
 #include "composite/pipeline/journal.h"
 #include "engine_bridge/scene/opaque_planes.h"
 #include "engine_bridge/scene/scene.h"
@@ -25,13 +27,15 @@ struct GbufferFlags {
   ColourFlags colour;
   PreviewFlags preview;
   RunFlags run;
+  SequenceFlags sequence;
 };
 
 Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
 
 // Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.
+//   told  the share of the picture that is done
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   const ColourSpace& space, Stages& stages);
+                   const ColourSpace& space, const std::function<void(double)>& told, Stages& stages);
 OpaquePlanes rasterise(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
                        Stages& stages, std::string& device);
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/gbuffer_render.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/colour_step.h"
@@ -25,7 +26,7 @@ ColourSpace spaceToRender(const GbufferFlags& flags) {
   return colours.of({}, flags.output, notes);
 }
 
-void gbuffer(const GbufferFlags& flags) {
+void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
   const Threads threads(flags.run.threads);
   Stages stages;
   const Window window = parseSize(flags.size);
@@ -39,9 +40,9 @@ void gbuffer(const GbufferFlags& flags) {
   Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
   say(scene.notes);
   say(bringInto(scene, space.fromRec709));
-  GBuffer frame;
-  frame.display = frame.data = window;
-  const Camera camera = chooseCamera(cameraChoice(flags.camera), frame, scene, flags.scenes.front());
+  GBuffer empty;
+  empty.display = empty.data = window;
+  const Camera camera = chooseCamera(cameraChoice(flags.camera), empty, scene, flags.scenes.front());
   note("camera: {}", camera.origin);
   const auto opaque = std::count_if(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
@@ -50,17 +51,20 @@ void gbuffer(const GbufferFlags& flags) {
   if (opaque == 0) note("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
 
   std::string device = "Embree";
-  const OpaquePlanes planes = flags.renderer == "gl" ? rasterise(flags, scene, camera, window, stages, device)
-                                                     : trace(flags, scene, camera, window, space, stages);
+  const OpaquePlanes planes =
+      flags.renderer == "gl"
+          ? rasterise(flags, scene, camera, window, stages, device)
+          : trace(
+                flags, scene, camera, window, space, [&](double share) { frame.voice->stage("trace", share); }, stages);
   if (flags.renderer == "gl" && !planes.lights.empty()) say("lights without shadows: --renderer embree traces them");
-  const std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
+  flags.preview.write(flags.colour.request(), space, planes.beauty);
+  const std::map<std::string, std::string> attributes = frame.with({{"pellucid:renderer", flags.renderer}});
   say(stages.time("write", [&] {
     return writeLayers(flags.output, window, window, layersOf(planes), attributes, &camera, false, nullptr,
                        chromaticitiesToWrite(space));
   }));
   nlohmann::json report{{"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", opaque}};
   reportSpace(space, report);
-  flags.preview.write(flags.colour.request(), space, planes.beauty);
   std::size_t triangles = 0;
   for (const Instance& instance : scene.instances)
     triangles += scene.primitives[static_cast<std::size_t>(instance.primitive)].indices.size() / 3;
@@ -108,7 +112,10 @@ void addGbuffer(CLI::App& app) {
   flags->colour.addTo(*verb, "Linear space to render in; auto is linear Rec.709, as glTF has it");
   flags->preview.addTo(*verb);
   flags->run.addTo(*verb);
-  verb->callback([flags] { gbuffer(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    overFrames(*verb, flags->sequence, {flags->run.json, [&](const FrameRun& frame) { gbuffer(*flags, frame); }});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -3,6 +3,7 @@
 
 #include "composite/cli/colour_flags.h"
 #include "composite/cli/foliage_flags.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/preview_flags.h"
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
@@ -23,6 +24,7 @@ struct ResolveFlags {
   RimFlags rims;
   ColourFlags colour;
   PreviewFlags preview;
+  SequenceFlags sequence;
 };
 
 PlanesRequest requestOf(const ResolveFlags& flags) {
@@ -38,19 +40,19 @@ PlanesRequest requestOf(const ResolveFlags& flags) {
   return request;
 }
 
-void resolveVerb(const ResolveFlags& flags) {
+void resolveVerb(const ResolveFlags& flags, const FrameRun& frame) {
   const Threads threads(flags.run.threads);
   const ColourRequest colour = flags.colour.request();
   flags.preview.check(colour, true);
-  Journal notes = journal();
+  Journal notes([](const std::string& sentence) { say(sentence); }, frame.watcher());
   const ResolvedPlanes result = resolvePlanes(requestOf(flags), notes);
+  flags.preview.write(colour, result.opaque.space, result.picture.rgba);
   say(notes.time("write", [&] {
     return writeOver(flags.output, result.opaque, &result.camera, result.picture, result.layers,
-                     {{"pellucid:method", result.info.method}});
+                     frame.with({{"pellucid:method", result.info.method}}));
   }));
   nlohmann::json report{{"output", flags.output}};
   reportSpace(result.opaque.space, report);
-  flags.preview.write(colour, result.opaque.space, result.picture.rgba);
   reportRun(flags.run, notes.stages, {}, result.device, report);
 }
 
@@ -71,7 +73,10 @@ void addResolve(CLI::App& app) {
   addLayersOption(*verb, flags->layers);
   flags->preview.addTo(*verb);
   flags->colour.addConfigTo(*verb);
-  verb->callback([flags] { resolveVerb(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    overFrames(*verb, flags->sequence, {flags->run.json, [&](const FrameRun& frame) { resolveVerb(*flags, frame); }});
+  });
 }
 
 }  // namespace pellucid::cli

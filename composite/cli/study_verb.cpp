@@ -5,9 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/over_frames.h"
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/study_files.h"
+#include "composite/cli/study_table.h"
 #include "composite/cli/verbs.h"
 #include "gbuffer/errors.h"
 
@@ -22,6 +24,7 @@ struct StudyFlags {
   RunFlags run;
   std::vector<int> passes{1};
   std::vector<std::string> precisions{"float"};
+  SequenceFlags sequence;
 };
 
 Paint paintOf(const std::string& name, int passes, const StochasticFlags& flags) {
@@ -33,7 +36,7 @@ Paint paintOf(const std::string& name, int passes, const StochasticFlags& flags)
                                methodNames()));
 }
 
-void study(const StudyFlags& flags) {
+void study(const StudyFlags& flags, FrameRun& frame, const std::shared_ptr<KeptWork>& kept) {
   const Threads threads(flags.run.threads);
   Request base = flags.render.request();
   base.passes = *std::max_element(flags.passes.begin(), flags.passes.end());
@@ -42,12 +45,21 @@ void study(const StudyFlags& flags) {
   const std::vector<StudyCandidate> candidates = studyCandidates(
       base, flags.methods, flags.passes, tiers,
       [&](const std::string& name, int passes) { return paintOf(name, passes, flags.render.stochastic); });
-  Compositor compositor(base, [](const std::string& note) { say(note); });
+  double before = 0.0, part = 0.0;  // of the whole: what is done, and what the method that runs now is
+  const auto watch = [&, tell = frame.watcher()](const std::string& stage, double share) {
+    tell(stage, before + part * share);
+  };
+  Compositor compositor(
+      base, [](const std::string& note) { say(note); }, watch, kept);
   std::error_code error;
   std::filesystem::create_directories(flags.folder, error);
   if (error) throw ResourceError(fmt::format("{}: cannot be made: {}", flags.folder, error.message()));
-  const StudyOutcome outcome = runStudy(compositor, candidates, base);
+  const StudyOutcome outcome = runStudy(compositor, candidates, base, [&](std::size_t done, std::size_t all) {
+    part = 1.0 / static_cast<double>(all);
+    before = part * static_cast<double>(done);
+  });
   writeStudy(flags.folder, flags.render.opaque, outcome);
+  frame.summary = jsonOf(outcome.rows);
   if (flags.run.json)
     fmt::print("{}\n", jsonOf(outcome.rows).dump(2));
   else
@@ -84,7 +96,12 @@ void addStudy(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--threads", flags->run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
   verb->add_flag("--json", flags->run.json, "Print the table as JSON");
-  verb->callback([flags] { study(*flags); });
+  flags->sequence.addTo(*verb, {.sideBySide = false, .resumes = false});
+  verb->callback([verb, flags] {
+    const auto kept = std::make_shared<KeptWork>(flags->render.scene.device);
+    overFrames(*verb, flags->sequence,
+               {flags->run.json, [&](FrameRun& frame) { study(*flags, frame, kept); }, printStudyTable});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -4,7 +4,11 @@
 
 namespace pellucid::cli {
 
-// Has each verb of the program end with checkOutputs' error as soon as its flags are read, before it opens a file.
+// Of the flags' values as they stand. Throws what checkOutputs() throws.
+void checkVerbOutputs(const CLI::App& verb);
+
+// Has every verb check its outputs once its flags are read; those of a sequence are checked frame by frame, before any
+// of them begins.
 void checkOutputsFirst(CLI::App& app);
 
 }  // namespace pellucid::cli
