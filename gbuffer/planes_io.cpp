@@ -273,9 +273,12 @@ OitPlanes readPlanes(const std::string& path, RimPlanes* rims) {
   return planesOf(document.parts[0], path, rims);
 }
 
-void writePasses(const std::string& path, const std::vector<PassPlanes>& passes) {
+void writePasses(const std::string& path, const std::vector<PassPlanes>& passes,
+                 const std::map<std::string, std::string>& attributes) {
   if (passes.size() == 1 && !passes[0].scatter.scatters()) {
-    writeNewExr(path, fileOf(passes[0]));
+    NewExr file = fileOf(passes[0]);
+    file.attributes.insert(attributes.begin(), attributes.end());
+    writeNewExr(path, file);
     return;
   }
   std::vector<NewExr> parts;
@@ -288,6 +291,7 @@ void writePasses(const std::string& path, const std::vector<PassPlanes>& passes)
     parts.back().part = fmt::format("pass{:04d}.scatter", i + 1);
     parts.back().attributes[kPass] = passText(i, passes.size()) + kScatter;
   }
+  parts.front().attributes.insert(attributes.begin(), attributes.end());
   writeNewExr(path, parts);
 }
 

@@ -1,5 +1,6 @@
 // OIT planes as an EXR file: layer `oit`, float, with a `pellucid:` header that says how the sums were made.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,9 @@ struct PassPlanes {
   bool edges = false;  // at filtered edges of the picture each pass sees one of the two surfaces
 };
 // A part for each pass, in order, and one more after it where it has `scatter`; a single one as writePlanes() does it.
-void writePasses(const std::string& path, const std::vector<PassPlanes>& passes);
+//   attributes  of the first part's header, besides those of planes
+void writePasses(const std::string& path, const std::vector<PassPlanes>& passes,
+                 const std::map<std::string, std::string>& attributes = {});
 // Throws what readPlanes() throws, and MeaningError for parts that are not all the passes of one picture.
 std::vector<PassPlanes> readPasses(const std::string& path);
 

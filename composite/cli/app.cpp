@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <new>
 
 #include "composite/cli/help_groups.h"
@@ -33,6 +32,9 @@ void addVerbs(CLI::App& app) {
 
 int run(int argc, const char* const* argv) {
   setUpMessages();
+  // Before anything is parsed, so that what cannot be is told in this form too.
+  for (int i = 1; i < argc; ++i)
+    if (std::string(argv[i]) == "--log-json") sayAsJson();
   cleanUpOnSignals();
   CLI::App app{kWhatItDoes, "pellucid"};
   addVerbs(app);
@@ -43,13 +45,13 @@ int run(int argc, const char* const* argv) {
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "pellucid: error: %s (see pellucid --help)\n", error.what());
+    sayError(std::string(error.what()) + " (see pellucid --help)");
     return 2;
   } catch (const Error& error) {
-    std::fprintf(stderr, "pellucid: error: %s\n", error.what());
+    sayError(error.what());
     return error.exitCode();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "pellucid: error: memory ran out\n");
+    sayError("memory ran out");
     return 6;
   }
 }

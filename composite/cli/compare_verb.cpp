@@ -4,6 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/compare_table.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
@@ -23,12 +25,15 @@ nlohmann::json number(double value) {
   return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
 }
 
-void compareVerb(const CompareFlags& flags) {
+//   flicker  of the frames so far
+void compareVerb(const CompareFlags& flags, FrameRun& frame, TemporalError& flicker) {
+  const CompareSettings settings = flags.settings();
   const ExrDocument a = readExr(flags.a), b = readExr(flags.b);
-  const CompareReport report = compareExr(a, b, flags.settings());
+  const CompareReport report = compareExr(a, b, settings);
+  if (frame.inSequence()) frame.summary = summaryOf(report, flicker.next(a, b, settings));
   if (flags.json)
     fmt::print("{}\n", jsonOf(report).dump(2));
-  else
+  else if (!frame.inSequence() || report.verdict != Verdict::same)
     fmt::print("{}", reportText(report, flags.a, flags.b));
   if (!flags.html.empty()) writePage(flags.html, comparePage(a, b, report));
   if (report.verdict == Verdict::failed) throw Error(1, fmt::format("{} and {} differ", flags.a, flags.b));
@@ -113,9 +118,22 @@ CompareSettings CompareFlags::settings() const {
 
 void addCompare(CLI::App& app) {
   auto flags = std::make_shared<CompareFlags>();
+  auto sequence = std::make_shared<SequenceFlags>();
   CLI::App* verb = app.add_subcommand("compare", "A regression gate: exit code 1 when two EXR files differ");
   flags->addTo(*verb);
-  verb->callback([flags] { compareVerb(*flags); });
+  sequence->addTo(*verb, {.sideBySide = false, .resumes = false});
+  verb->callback([verb, flags, sequence] {
+    TemporalError flicker;
+    const auto compareFrame = [&](FrameRun& frame) {
+      try {
+        compareVerb(*flags, frame, flicker);
+      } catch (const Error& error) {
+        if (error.exitCode() != 1) flicker.forget();  // a frame is missing
+        throw;
+      }
+    };
+    overFrames(*verb, *sequence, {flags->json, compareFrame, printCompareTable});
+  });
 }
 
 }  // namespace pellucid::cli

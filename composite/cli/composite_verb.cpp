@@ -3,10 +3,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/compositor.h"
+#include "composite/pipeline/default_weight.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -14,6 +16,9 @@ namespace {
 
 // Of the sample `bottles`, 99.7% of the pixels lie within 0.02 of 64 samples; 16 bring that to 99.9% at twice the time.
 constexpr int kDefaultPasses = 8;
+
+// What a process keeps from one frame to the next.
+using Kept = std::shared_ptr<KeptWork>;
 
 std::vector<std::string> viewsOf(const std::string& path) {
   const ExrDocument document = readExr(path);
@@ -26,7 +31,7 @@ std::vector<std::string> viewsOf(const std::string& path) {
 // Extra layers of the second view and further ones are named after it where they would lie in one part.
 std::vector<std::string> writeViews(const std::string& path, const std::vector<std::string>& views,
                                     const std::vector<std::unique_ptr<Compositor>>& compositors,
-                                    const std::vector<Result>& results) {
+                                    const std::vector<Result>& results, const FrameRun& frame) {
   std::vector<PictureOfView> pictures;
   std::vector<std::vector<ExtraLayer>> renamed(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -37,14 +42,15 @@ std::vector<std::string> writeViews(const std::string& path, const std::vector<s
     pictures.push_back(
         {file, results[i].picture.rgba, results[i].picture.touched, beside ? renamed[i] : results[i].layers});
   }
-  return writePictures(path, pictures, compositors[0]->attributes(results[0]));
+  return writePictures(path, pictures, frame.with(compositors[0]->attributes(results[0])));
 }
 
-void composite(const CompositeFlags& flags) {
+void composite(const CompositeFlags& flags, const FrameRun& frame, const Kept& kept) {
   const Threads threads(flags.run.threads);
-  const Request request = flags.render.request();
+  const Request request = frame.weighed(flags.render.request());
   flags.preview.check(request.shot.colour, request.shot.scene.assetRoot);
-  Compositor compositor(request, [](const std::string& note) { say(note); });
+  Compositor compositor(
+      request, [](const std::string& note) { say(note); }, frame.watcher(), kept);
   if (flags.explain) {
     for (const std::string& line : describe(compositor.plan(request), compositor.facts())) fmt::print("{}\n", line);
     return;
@@ -53,14 +59,15 @@ void composite(const CompositeFlags& flags) {
   nlohmann::json report{{"output", flags.output}, {"method", result.plan.method}};
   reportSpace(compositor.shot().opaque.space, report);
   reportError(flags.run, result, report);
-  say(result.stages.time("write", [&] { return compositor.write(flags.output, result); }));
+  // The picture last, whose header says that all is done.
   flags.preview.write(request.shot.colour, request.shot.scene.assetRoot, compositor.shot().opaque.space,
                       result.picture.rgba);
+  say(result.stages.time("write", [&] { return compositor.write(flags.output, result, frame.attributes); }));
   reportRun(flags.run, result.stages, result.counts, result.device, report);
 }
 
 // Every view of the file with its own camera, and all of them in one file again.
-void compositeViews(const CompositeFlags& flags) {
+void compositeViews(const CompositeFlags& flags, const FrameRun& frame, const Kept& kept) {
   const Threads threads(flags.run.threads);
   if (flags.preview.wanted())
     throw UsageError("--preview: found it with --view all, expected one view: a PNG shows one picture");
@@ -70,8 +77,9 @@ void compositeViews(const CompositeFlags& flags) {
   nlohmann::json report{{"output", flags.output}, {"views", nlohmann::json::array()}};
   for (const std::string& view : views) {
     say("view " + view);
-    const Request request = flags.render.requestOfView(view, views);
-    compositors.push_back(std::make_unique<Compositor>(request, [](const std::string& note) { say(note); }));
+    const Request request = frame.weighed(flags.render.requestOfView(view, views));
+    compositors.push_back(std::make_unique<Compositor>(
+        request, [](const std::string& note) { say(note); }, frame.watcher(), kept));
     Compositor& compositor = *compositors.back();
     if (compositor.shot().deepOpaque)
       throw UsageError(request.shot.opaque + ": --view: found all with a deep picture, expected one view of it");
@@ -93,7 +101,7 @@ void compositeViews(const CompositeFlags& flags) {
     for (const auto& [name, seconds] : result.stages.seconds()) stages.add(name, seconds);
     if (&result != &results.front()) counts.add(result.counts);
   }
-  say(stages.time("write", [&] { return writeViews(flags.output, views, compositors, results); }));
+  say(stages.time("write", [&] { return writeViews(flags.output, views, compositors, results, frame); }));
   reportRun(flags.run, stages, counts, results.front().device, report);
 }
 
@@ -113,12 +121,20 @@ void CompositeFlags::addTo(CLI::App& verb, bool allViews) {
 
 void addComposite(CLI::App& app) {
   auto flags = std::make_shared<CompositeFlags>();
+  auto sequence = std::make_shared<SequenceFlags>();
   CLI::App* verb = app.add_subcommand(
       "composite", "Composite transparent geometry onto an opaque render: exactly, unless --method says otherwise");
   flags->addTo(*verb);
-  verb->callback([flags, verb] {
+  sequence->addTo(*verb);
+  verb->callback([verb, flags, sequence] {
     flags->model.apply(*verb);
-    flags->render.read.view == "all" ? compositeViews(*flags) : composite(*flags);
+    const Kept kept = std::make_shared<KeptWork>(flags->render.scene.device);
+    VerbRun run{flags->run.json, [&](const FrameRun& frame) {
+                  flags->render.read.view == "all" ? compositeViews(*flags, frame, kept)
+                                                   : composite(*flags, frame, kept);
+                }};
+    run.fits = [&] { return fitsWeight(flags->render.request()); };
+    overFrames(*verb, *sequence, run);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/budget.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
@@ -45,10 +46,11 @@ ExtraLayer layersOf(const FlatPicture& flat) {
   return layer;
 }
 
-void flattenVerb(const FlattenFlags& flags) {
+void flattenVerb(const FlattenFlags& flags, const FrameRun& frame) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  const FlatPicture flat = flattenFiles(flags, stages);
+  const FlatPicture flat = flattenFiles(
+      flags, stages, [&](double share) { frame.voice->stage("flatten", share); }, frame.attributes);
   nlohmann::json report{{"output", flags.output}, {"samples", flat.samples}};
   RunCounts counts;
   counts.fragments = flat.samples;
@@ -57,21 +59,22 @@ void flattenVerb(const FlattenFlags& flags) {
 
 }  // namespace
 
-FlatPicture flattenFiles(const FlattenFlags& flags, Stages& stages) {
+FlatPicture flattenFiles(const FlattenFlags& flags, Stages& stages, const std::function<void(double)>& told,
+                         const std::map<std::string, std::string>& attributes) {
   flags.preview.check(flags.colour.request(), flags.colour.assetRoot, true);
   // A sample takes its channels as floats: seven at most, and its share of the pointers.
   const std::uint64_t most = parseBudget(flags.budget) / 32;
-  FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most, flags.view); });
+  FlatPicture flat = stages.time("flatten", [&] { return flattenDeep(flags.files, most, flags.view, told); });
   say(flat.notes);
   if (flat.oddities.notFinite) note("{} deep samples are not numbers and were skipped", flat.oddities.notFinite);
   if (flat.oddities.outOfRange)
     note("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
+  writePreview(flags, flat);
   if (!flags.output.empty())
     stages.time("write", [&] {
-      say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, {}, nullptr, flags.type == "half",
-                      &flat.like));
+      say(writeLayers(flags.output, flat.display, flat.data, {layersOf(flat)}, attributes, nullptr,
+                      flags.type == "half", &flat.like));
     });
-  writePreview(flags, flat);
   return flat;
 }
 
@@ -91,9 +94,13 @@ void FlattenFlags::addTo(CLI::App& verb) {
 
 void addFlatten(CLI::App& app) {
   auto flags = std::make_shared<FlattenFlags>();
+  auto sequence = std::make_shared<SequenceFlags>();
   CLI::App* verb = app.add_subcommand("flatten", "Merge deep EXR files and composite their samples, exactly");
   flags->addTo(*verb);
-  verb->callback([flags] { flattenVerb(*flags); });
+  sequence->addTo(*verb);
+  verb->callback([verb, flags, sequence] {
+    overFrames(*verb, *sequence, {flags->run.json, [&](const FrameRun& frame) { flattenVerb(*flags, frame); }});
+  });
 }
 
 }  // namespace pellucid::cli

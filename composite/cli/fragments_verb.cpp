@@ -2,6 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/over_frames.h"
 #include "composite/cli/render_flags.h"
 #include "composite/cli/results.h"
 #include "composite/cli/row_gatherer.h"
@@ -16,27 +17,29 @@ struct FragmentsFlags {
   std::string output;
   RenderFlags render;
   RunFlags run;
+  SequenceFlags sequence;
 };
 
-DeepHeader headerOf(const Shot& shot) {
+DeepHeader headerOf(const Shot& shot, const FrameRun& frame) {
   const GBuffer& gbuffer = shot.opaque.gbuffer;
   DeepHeader header;
   header.display = gbuffer.display;
   header.data = gbuffer.data;
   header.pixelAspect = gbuffer.pixelAspect;
   header.channels = recordChannels();
-  header.attributes = {{"pellucid:note", "oit.* are not premultiplied: do not composite them"}};
+  header.attributes = frame.with({{"pellucid:note", "oit.* are not premultiplied: do not composite them"}});
   header.chromaticities = chromaticitiesToWrite(shot.opaque.space);
   if (shot.hasScene) header.camera = &shot.camera;
   return header;
 }
 
-void fragmentsVerb(const FragmentsFlags& flags) {
+void fragmentsVerb(const FragmentsFlags& flags, const FrameRun& frame, const std::shared_ptr<KeptWork>& kept) {
   const Threads threads(flags.run.threads);
   const Request request = flags.render.request();
-  Compositor compositor(request, [](const std::string& note) { say(note); });
+  Compositor compositor(
+      request, [](const std::string& note) { say(note); }, frame.watcher(), kept);
   const Shot& shot = compositor.shot();
-  DeepWriter writer(flags.output, headerOf(shot));
+  DeepWriter writer(flags.output, headerOf(shot, frame));
   RowGatherer rows(shot.opaque.gbuffer.data, shot.opaque.metresPerUnit, writer);
   const RunCounts counts = compositor.listFragments(request, [&](const FragmentLists& lists) { rows.add(lists); });
   writer.finish();
@@ -59,7 +62,12 @@ void addFragments(CLI::App& app) {
   flags->render.addTo(*verb, what);
   verb->add_option("-o,--output", flags->output, "Deep EXR to write")->required();
   flags->run.addTo(*verb);
-  verb->callback([flags] { fragmentsVerb(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    const auto kept = std::make_shared<KeptWork>(flags->render.scene.device);
+    overFrames(*verb, flags->sequence,
+               {flags->run.json, [&](const FrameRun& frame) { fragmentsVerb(*flags, frame, kept); }});
+  });
 }
 
 }  // namespace pellucid::cli

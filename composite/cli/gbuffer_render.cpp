@@ -17,7 +17,7 @@ namespace {
 constexpr int kLongestEdge = 65536;
 
 // Says how far a long render is, not more often than one can read.
-class Progress {
+class SlowRender {
  public:
   void operator()(double done) {
     const auto now = std::chrono::steady_clock::now();
@@ -46,7 +46,7 @@ Window parseSize(const std::string& text) {
 }
 
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   const ColourSpace& space, Stages& stages) {
+                   const ColourSpace& space, const std::function<void(double)>& told, Stages& stages) {
   if (flags.textureFilter == "mipmap")
     throw UsageError(
         "--texture-filter: found mipmap, expected bilinear or nearest with --renderer embree: its samples filter");
@@ -65,7 +65,10 @@ OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& 
   settings.samples = flags.samples.value_or(settings.samples);
   settings.shadows = flags.shadows != "off";
   settings.aoRadius = static_cast<float>(flags.aoRadius.value_or(static_cast<double>(settings.aoRadius)));
-  settings.progress = [progress = std::make_shared<Progress>()](double done) { (*progress)(done); };
+  settings.progress = [notes = std::make_shared<SlowRender>(), told](double done) {
+    (*notes)(done);
+    if (told) told(done);
+  };
   return stages.time("trace", [&] { return renderOpaque(scene, camera, window, window, environment, settings); });
 }
 

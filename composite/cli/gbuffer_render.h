@@ -1,5 +1,7 @@
 // The two renderers behind `gbuffer`.
 #pragma once
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "composite/cli/colour_flags.h"
 #include "composite/cli/options.h"
 #include "composite/cli/preview_flags.h"
+#include "composite/cli/sequence_flags.h"
 #include "composite/pipeline/journal.h"
 #include "engine_bridge/scene/opaque_planes.h"
 #include "engine_bridge/scene/scene.h"
@@ -25,6 +28,7 @@ struct GbufferFlags {
   ColourFlags colour;
   PreviewFlags preview;
   RunFlags run;
+  SequenceFlags sequence;
 };
 
 // The opaque part of a scene, rendered.
@@ -42,14 +46,20 @@ struct RenderedPart {
 // Reads the scenes and renders what is opaque in them, saying what was inferred. Throws UsageError for flags that do
 // not go together, and what readers throw.
 //   fits  where nobody names a camera and the scenes have none, one is made that frames them
-RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages);
-void writePart(const std::string& path, const RenderedPart& part, const std::string& renderer);  // and says the notes
+//   told  the share of a traced picture that is done; may be null
+RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages,
+                        const std::function<void(double)>& told = nullptr);
+// Writes it, and says the notes.
+//   attributes  for its header, beside the renderer's name
+void writePart(const std::string& path, const RenderedPart& part, const std::string& renderer,
+               std::map<std::string, std::string> attributes = {});
 
 Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
 
 // Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.
+//   told  the share of the picture that is done; may be null
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   const ColourSpace& space, Stages& stages);
+                   const ColourSpace& space, const std::function<void(double)>& told, Stages& stages);
 OpaquePlanes rasterise(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
                        Stages& stages, std::string& device);
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/gbuffer_render.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/colour_step.h"
@@ -25,15 +26,15 @@ ColourSpace spaceToRender(const GbufferFlags& flags) {
   return colours.of({}, flags.output, notes);
 }
 
-void gbuffer(const GbufferFlags& flags) {
+void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
   const Threads threads(flags.run.threads);
   Stages stages;
-  const RenderedPart part = renderPart(flags, false, stages);
-  stages.time("write", [&] { writePart(flags.output, part, flags.renderer); });
+  const RenderedPart part = renderPart(flags, false, stages, [&](double share) { frame.voice->stage("trace", share); });
+  flags.preview.write(flags.colour.request(), flags.assetRoot, part.space, part.planes.beauty);
+  stages.time("write", [&] { writePart(flags.output, part, flags.renderer, frame.attributes); });
   nlohmann::json report{
       {"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", part.opaqueInstances}};
   reportSpace(part.space, report);
-  flags.preview.write(flags.colour.request(), flags.assetRoot, part.space, part.planes.beauty);
   RunCounts counts;
   counts.triangles = part.triangles;
   reportRun(flags.run, stages, counts, part.device, report);
@@ -41,7 +42,7 @@ void gbuffer(const GbufferFlags& flags) {
 
 }  // namespace
 
-RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages) {
+RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, const std::function<void(double)>& told) {
   RenderedPart part;
   part.window = parseSize(flags.size);
   SceneOptions options;
@@ -66,7 +67,7 @@ RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages) {
   if (part.opaqueInstances == 0)
     note("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
   part.planes = flags.renderer == "gl" ? rasterise(flags, scene, part.camera, part.window, stages, part.device)
-                                       : trace(flags, scene, part.camera, part.window, part.space, stages);
+                                       : trace(flags, scene, part.camera, part.window, part.space, told, stages);
   if (flags.renderer == "gl" && !part.planes.lights.empty())
     say("lights without shadows: --renderer embree traces them");
   part.lights = part.planes.lights.size();
@@ -75,9 +76,11 @@ RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages) {
   return part;
 }
 
-void writePart(const std::string& path, const RenderedPart& part, const std::string& renderer) {
-  say(writeLayers(path, part.window, part.window, layersOf(part.planes), {{"pellucid:renderer", renderer}},
-                  &part.camera, false, nullptr, chromaticitiesToWrite(part.space)));
+void writePart(const std::string& path, const RenderedPart& part, const std::string& renderer,
+               std::map<std::string, std::string> attributes) {
+  attributes.emplace("pellucid:renderer", renderer);
+  say(writeLayers(path, part.window, part.window, layersOf(part.planes), attributes, &part.camera, false, nullptr,
+                  chromaticitiesToWrite(part.space)));
 }
 
 void addGbuffer(CLI::App& app) {
@@ -120,7 +123,10 @@ void addGbuffer(CLI::App& app) {
   flags->colour.addTo(*verb, "Linear space to render in; auto is linear Rec.709, as glTF has it");
   flags->preview.addTo(*verb);
   flags->run.addTo(*verb);
-  verb->callback([flags] { gbuffer(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    overFrames(*verb, flags->sequence, {flags->run.json, [&](const FrameRun& frame) { gbuffer(*flags, frame); }});
+  });
 }
 
 }  // namespace pellucid::cli

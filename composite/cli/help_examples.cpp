@@ -15,7 +15,7 @@ constexpr Example kExamples[] = {
     {"gbuffer", "pellucid gbuffer scene.glb -o shot.exr --size 1920x1080 --samples 64"},
     {"render", "pellucid render scene.glb -o out.exr --preview out.png"},
     {"compare", "pellucid compare expected.exr found.exr --fail 0.004 --html report.html"},
-    {"flatten", "pellucid flatten smoke.exr sparks.exr -o flat.exr"},
+    {"flatten", "pellucid flatten smoke.####.exr sparks.####.exr -o flat.####.exr --frames 1001-1100"},
     {"fragments", "pellucid fragments shot.exr bottles.glb -o deep.exr"},
     {"study", "pellucid study shot.exr bottles.glb -o report --methods over,weighted,mlab:4 --aa 1,8"},
     {"help", "pellucid help methods"},

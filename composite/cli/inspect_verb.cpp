@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/options.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/verbs.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/errors.h"
@@ -15,6 +16,7 @@ struct InspectFlags {
   std::string file;
   bool devices = false, json = false;
   ReadFlags read;
+  SequenceFlags sequence;
 };
 
 void inspect(const InspectFlags& flags) {
@@ -44,7 +46,10 @@ void addInspect(CLI::App& app) {
   verb->add_flag("--devices", flags->devices, "List the GL devices");
   verb->add_flag("--json", flags->json, "Print results as JSON");
   flags->read.addTo(*verb);
-  verb->callback([flags] { inspect(*flags); });
+  flags->sequence.addTo(*verb, {.sideBySide = true, .resumes = false});
+  verb->callback([verb, flags] {
+    overFrames(*verb, flags->sequence, {flags->json, [&](const FrameRun&) { inspect(*flags); }});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -2,6 +2,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,8 +29,17 @@ template <class... Values>
 void note(fmt::format_string<Values...> text, Values&&... values) {
   say(fmt::format(text, std::forward<Values>(values)...));
 }
+void sayError(const std::string& sentence);
 inline Journal journal() {
   return Journal([](const std::string& note) { say(note); });
 }
+
+// Lines are JSON objects from now on: time (UTC), level, message, and the frame where there is one.
+void sayAsJson();
+// A message as it would stand on stderr, with its end of line.
+//   frame  its name, or ""
+std::string messageLine(const std::string& level, const std::string& sentence, const std::string& frame = "");
+// Notes go there instead; null: to stderr.
+void hearNotes(std::function<void(const std::string&)> ear);
 
 }  // namespace pellucid::cli

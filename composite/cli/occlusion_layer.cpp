@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "composite/cli/options.h"
@@ -102,6 +103,16 @@ FoliagePlanes foliageOf(const GBuffer& layer) {
   foliage.coverage = Image<float>(foliage.viewZ.width(), foliage.viewZ.height());
   for (std::size_t i = 0; i < foliage.coverage.size(); ++i) foliage.coverage[i] = layer.beauty[i].a;
   return foliage;
+}
+
+nlohmann::json occlusionReport(const InferredOcclusion& inferred, const FoliagePlanes& foliage) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < inferred.occlusion.size(); ++i)
+    if (shading::isRim(foliage.coverage[i])) sum += static_cast<double>(inferred.occlusion[i]);
+  return {{"rims", inferred.rims},
+          {"withoutDepth", inferred.withoutDepth},
+          {"withoutSources", inferred.withoutSources},
+          {"meanOcclusion", inferred.rims ? sum / static_cast<double>(inferred.rims) : 1.0}};
 }
 
 }  // namespace pellucid::cli

@@ -1,5 +1,6 @@
 // The rendered foliage layer of `pellucid occlusion`, and how it and the picture are read.
 #pragma once
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "composite/occlusion.h"
@@ -23,5 +24,8 @@ OpaqueFile readFoliageLayer(const std::string& path, const ReadOptions& options,
 Image<glm::vec3> indirectLight(const OpaqueFile& layer, const std::string& wanted);
 
 FoliagePlanes foliageOf(const GBuffer& layer);
+
+// What --json prints of it: rims, those without depth or without anything opaque beside them, and the mean occlusion.
+nlohmann::json occlusionReport(const InferredOcclusion& inferred, const FoliagePlanes& foliage);
 
 }  // namespace pellucid::cli

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/occlusion_layer.h"
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/occluders.h"
@@ -21,6 +22,7 @@ struct OcclusionFlags {
   double radius = 0.0, direct = 0.0;
   ReadFlags read;
   RunFlags run;
+  SequenceFlags sequence;
 };
 
 // Depth and occlusion beside the rims: the file's own, and from depth where it has none.
@@ -49,17 +51,7 @@ OccluderPlanes occludersBeside(const OcclusionFlags& flags, const GBuffer& gbuff
   return occluders;
 }
 
-nlohmann::json reportOf(const InferredOcclusion& inferred, const FoliagePlanes& foliage) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < inferred.occlusion.size(); ++i)
-    if (shading::isRim(foliage.coverage[i])) sum += static_cast<double>(inferred.occlusion[i]);
-  return {{"rims", inferred.rims},
-          {"withoutDepth", inferred.withoutDepth},
-          {"withoutSources", inferred.withoutSources},
-          {"meanOcclusion", inferred.rims ? sum / static_cast<double>(inferred.rims) : 1.0}};
-}
-
-void occlusionVerb(const OcclusionFlags& flags) {
+void occlusionVerb(const OcclusionFlags& flags, const FrameRun& frame) {
   const Threads threads(flags.run.threads);
   Stages stages;
   const OpaqueFile opaque =
@@ -98,11 +90,12 @@ void occlusionVerb(const OcclusionFlags& flags) {
               [&] { applyOcclusion(inferred.occlusion, indirect, static_cast<float>(flags.direct), beauty, touched); });
   const std::vector<ExtraLayer> added{{"", {{"occlusion", inferred.occlusion}}}};
   say(stages.time("write", [&] {
-    return writePicture(flags.output, layer, beauty, touched, added, {{kOcclusionAttribute, flags.inference}});
+    return writePicture(flags.output, layer, beauty, touched, added,
+                        frame.with({{kOcclusionAttribute, flags.inference}}));
   }));
   std::size_t changed = 0;
   for (std::size_t i = 0; i < touched.size(); ++i) changed += touched[i];
-  nlohmann::json report = reportOf(inferred, foliage);
+  nlohmann::json report = occlusionReport(inferred, foliage);
   report["output"] = flags.output;
   report["changed"] = changed;
   if (!flags.run.json) fmt::print("{} rim pixels, {} darkened\n", inferred.rims, changed);
@@ -141,7 +134,10 @@ void addOcclusion(CLI::App& app) {
   verb->add_option("--camera", flags->camera,
                    "eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES, for occlusion from depth "
                    "where the file has no camera");
-  verb->callback([flags] { occlusionVerb(*flags); });
+  flags->sequence.addTo(*verb);
+  verb->callback([verb, flags] {
+    overFrames(*verb, flags->sequence, {flags->run.json, [&](const FrameRun& frame) { occlusionVerb(*flags, frame); }});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -1,6 +1,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
@@ -9,19 +10,19 @@
 namespace pellucid::cli {
 namespace {
 
-void resolveVerb(const ResolveFlags& flags) {
+void resolveVerb(const ResolveFlags& flags, const FrameRun& frame) {
   const Threads threads(flags.run.threads);
   const ColourRequest colour = flags.colour.request();
   flags.preview.check(colour, flags.colour.assetRoot, true);
-  Journal notes = journal();
+  Journal notes([](const std::string& sentence) { say(sentence); }, frame.watcher());
   const ResolvedPlanes result = resolvePlanes(flags.request(), notes);
+  flags.preview.write(colour, flags.colour.assetRoot, result.opaque.space, result.picture.rgba);
   say(notes.time("write", [&] {
     return writeOver(flags.output, result.opaque, &result.camera, result.picture, result.layers,
-                     {{"pellucid:method", result.info.method}});
+                     frame.with({{"pellucid:method", result.info.method}}));
   }));
   nlohmann::json report{{"output", flags.output}};
   reportSpace(result.opaque.space, report);
-  flags.preview.write(colour, flags.colour.assetRoot, result.opaque.space, result.picture.rgba);
   reportRun(flags.run, notes.stages, {}, result.device, report);
 }
 
@@ -57,9 +58,13 @@ PlanesRequest ResolveFlags::request() const {
 
 void addResolve(CLI::App& app) {
   auto flags = std::make_shared<ResolveFlags>();
+  auto sequence = std::make_shared<SequenceFlags>();
   CLI::App* verb = app.add_subcommand("resolve", "The compositing step alone: planes over an opaque render");
   flags->addTo(*verb);
-  verb->callback([flags] { resolveVerb(*flags); });
+  sequence->addTo(*verb);
+  verb->callback([verb, flags, sequence] {
+    overFrames(*verb, *sequence, {flags->run.json, [&](const FrameRun& frame) { resolveVerb(*flags, frame); }});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -4,8 +4,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/study_files.h"
+#include "composite/cli/study_table.h"
 #include "composite/cli/verb_flags.h"
 #include "composite/cli/verbs.h"
 #include "gbuffer/errors.h"
@@ -22,15 +24,24 @@ Paint paintOf(const std::string& name, int passes, const StochasticFlags& flags)
                                methodNames()));
 }
 
-void study(const StudyFlags& flags) {
+void study(const StudyFlags& flags, FrameRun& frame, const std::shared_ptr<KeptWork>& kept) {
   const Threads threads(flags.run.threads);
   const Request base = flags.base();
   const std::vector<StudyCandidate> candidates = flags.candidates(base);
-  Compositor compositor(base, [](const std::string& note) { say(note); });
+  double before = 0.0, part = 0.0;  // of the whole: what is done, and what the method that runs now is
+  const auto watch = [&, tell = frame.watcher()](const std::string& stage, double share) {
+    tell(stage, before + part * share);
+  };
+  Compositor compositor(
+      base, [](const std::string& note) { say(note); }, watch, kept);
   makeFolder(flags.folder);
-  const StudyOutcome outcome = runStudy(compositor, candidates, base);
+  const StudyOutcome outcome = runStudy(compositor, candidates, base, [&](std::size_t done, std::size_t all) {
+    part = 1.0 / static_cast<double>(all);
+    before = part * static_cast<double>(done);
+  });
   const OpaqueFile& picture = compositor.shot().opaque;
   writeStudy(flags.folder, picture, outcome);
+  frame.summary = jsonOf(outcome.rows, picture.space);
   if (flags.run.json)
     fmt::print("{}\n", jsonOf(outcome.rows, picture.space).dump(2));
   else
@@ -81,10 +92,16 @@ std::vector<StudyCandidate> StudyFlags::candidates(const Request& base) const {
 
 void addStudy(CLI::App& app) {
   auto flags = std::make_shared<StudyFlags>();
+  auto sequence = std::make_shared<SequenceFlags>();
   CLI::App* verb = app.add_subcommand(
       "study", "Time of the exact picture of a shot, and error against time of the other methods: table, plot, page");
   flags->addTo(*verb);
-  verb->callback([flags] { study(*flags); });
+  sequence->addTo(*verb, {.sideBySide = false, .resumes = false});
+  verb->callback([verb, flags, sequence] {
+    const auto kept = std::make_shared<KeptWork>(flags->render.scene.device);
+    overFrames(*verb, *sequence,
+               {flags->run.json, [&](FrameRun& frame) { study(*flags, frame, kept); }, printStudyTable});
+  });
 }
 
 }  // namespace pellucid::cli

@@ -2,6 +2,8 @@
 // that a flag added to a verb is a keyword there.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,7 +62,10 @@ struct FlattenFlags {
   void addTo(CLI::App& verb);
 };
 // Flattens, and writes what the flags name. Throws UsageError and what the readers throw.
-FlatPicture flattenFiles(const FlattenFlags& flags, Stages& stages);
+//   told        the share of the files that is done; may be null
+//   attributes  for the header of the output
+FlatPicture flattenFiles(const FlattenFlags& flags, Stages& stages, const std::function<void(double)>& told = nullptr,
+                         const std::map<std::string, std::string>& attributes = {});
 
 struct CompareFlags {
   std::string a, b, html, metadata = "fail";

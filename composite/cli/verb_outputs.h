@@ -4,10 +4,11 @@
 
 namespace pellucid::cli {
 
-// Throws checkOutputs' error for what the flags of a verb, which have been parsed, name as outputs.
+// Of the flags' values as they stand. Throws what checkOutputs() throws.
 void checkVerbOutputs(const CLI::App& verb);
 
-// Has each verb of the program end with checkOutputs' error as soon as its flags are read, before it opens a file.
+// Has every verb of the program check its outputs once its flags are read, before it opens a file; those of a sequence
+// are checked frame by frame, before any of them begins.
 void checkOutputsFirst(CLI::App& app);
 
 }  // namespace pellucid::cli

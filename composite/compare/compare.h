@@ -27,9 +27,10 @@ struct CompareSettings {
   CompareLimit fail, warn;
   std::size_t allowedFailures = 0;  // pixels of a layer
   MetadataRule metadata = MetadataRule::fail;
-  std::vector<std::string> ignoredAttributes;  // beside the clock's: capDate, utcOffset, DateTime, Date, RenderTime
-  std::vector<std::string> layers;             // compare only these; empty compares all. "" is the layer without a name
-  bool finiteOnly = false;                     // infinity and NaN fail even where both files agree on them
+  std::vector<std::string>
+      ignoredAttributes;  // beside the clock's (capDate, utcOffset, DateTime, Date, RenderTime) and pellucid:digest
+  std::vector<std::string> layers;  // compare only these; empty compares all. "" is the layer without a name
+  bool finiteOnly = false;          // infinity and NaN fail even where both files agree on them
 };
 
 enum class Verdict { same, warned, failed };

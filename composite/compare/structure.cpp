@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <set>
 
+#include "composite/sequence/digest.h"
+
 namespace pellucid {
 namespace {
 
 // Follow from pixels and layout, which are compared for themselves.
 const std::set<std::string> kCompared{"channels",           "dataWindow", "displayWindow", "chunkCount",
                                       "maxSamplesPerPixel", "name",       "type",          "version"};
-const std::set<std::string> kClock{"capDate", "utcOffset", "DateTime", "Date", "RenderTime"};
+// When a picture was made, and from what.
+const std::set<std::string> kClock{"capDate", "utcOffset", "DateTime", "Date", "RenderTime", kDigestAttribute};
 
 std::string prefixOf(const ExrDocument& document, const ExrPart& part) {
   return document.parts.size() > 1 && !part.name.empty() ? part.name + "." : "";

@@ -140,7 +140,8 @@ void flattenRows(std::vector<Source>& sources, const Window& band, FlatPicture& 
 
 }  // namespace
 
-FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most, const std::string& view) {
+FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most, const std::string& view,
+                        const std::function<void(double)>& told) {
   std::vector<Source> sources(paths.size());
   FlatPicture flat;
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -181,6 +182,7 @@ FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t mos
         flat.samples += samplesIn(source.rows, row);
     flattenRows(sources, {flat.data.x0, y, flat.data.x1, end}, flat, mutex);
     y = end;
+    if (told) told(static_cast<double>(y - flat.data.y0) / height);
   }
   return flat;
 }

@@ -2,6 +2,7 @@
 // Streamed by bands of scanlines, so that memory does not follow the file's size.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -27,8 +28,9 @@ struct FlatPicture {
 // Merges the files' samples over the union of their data windows and composites them front to back.
 //   most  deep samples held at once, beyond one row's
 //   view  what --view says
+//   told  the share of the rows that are done, as the bands go by; may be null
 // Throws what resolveDeep and DeepReader throw, MeaningError for display windows that differ.
 FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t most = std::uint64_t{1} << 21,
-                        const std::string& view = "");
+                        const std::string& view = "", const std::function<void(double)>& told = nullptr);
 
 }  // namespace pellucid

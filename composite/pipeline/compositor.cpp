@@ -90,8 +90,11 @@ struct Compositor::Run {
   std::unique_ptr<LayerSources> sources;
 };
 
-Compositor::Compositor(const Request& request, std::function<void(const std::string&)> sink)
-    : journal_(std::move(sink)), device_(request.device) {
+Compositor::Compositor(const Request& request, std::function<void(const std::string&)> sink,
+                       std::function<void(const std::string&, double)> watch, std::shared_ptr<KeptWork> kept)
+    : journal_(std::move(sink), std::move(watch)),
+      kept_(kept ? std::move(kept) : std::make_shared<KeptWork>(request.device)),
+      device_(kept_->device) {
   validate(request);
   validate(methodByFile(request));
   shot_ = loadShot(request.shot, meetsRays(request), journal_);
@@ -102,7 +105,7 @@ Compositor::~Compositor() {
   const Device::Turn turn(device_);
   triangles_.reset();
   lighting_.reset();
-  device_.close();
+  if (kept_.use_count() == 1) device_.close();
 }
 
 Plan Compositor::plan(const Request& request) const {
@@ -187,6 +190,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& ru
     mean = VeilMean();
     for (int i = 0; i < plan.passes; ++i) {
       const PassSettings sample = samplePass(pass, i, plan.passes);
+      journal.reached(static_cast<double>(i) / plan.passes);
       moving.moveTo(sample.sample, i);
       Veil veil = painter->paint(sample, i);
       journal.time("average", [&] {
@@ -195,6 +199,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& ru
       });
     }
   } while (!painter->settled());
+  journal.reached(1.0);
   return journal.time("average", [&] {
     Veil veil = mean.finish();
     if (edges) edges->finish(veil);
@@ -307,6 +312,7 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, i, run.plan.passes);
+    journal_.reached(static_cast<double>(i) / run.plan.passes);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
     sample.normalisation = sums.pass.normalisation;
     moving.moveTo(sample.sample, i);
@@ -371,12 +377,15 @@ std::map<std::string, std::string> Compositor::attributes(const Result& result) 
   return attributes;
 }
 
-std::vector<std::string> Compositor::write(const std::string& path, const Result& result) const {
+std::vector<std::string> Compositor::write(const std::string& path, const Result& result,
+                                           const std::map<std::string, std::string>& beside) const {
+  std::map<std::string, std::string> header = attributes(result);
+  header.insert(beside.begin(), beside.end());
   if (shot_->lender)
     return writeFromMemory(path, shot_->opaque, shot_->hasCamera ? &shot_->camera : nullptr, result.picture.rgba,
-                           result.layers, attributes(result));
+                           result.layers, header);
   return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,
-                   attributes(result));
+                   header);
 }
 
 }  // namespace pellucid

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "composite/edges.h"
+#include "composite/pipeline/kept_work.h"
 #include "composite/pipeline/lighting.h"
 #include "composite/pipeline/painter.h"
 #include "composite/pipeline/plan.h"
@@ -23,8 +24,12 @@ class Compositor {
  public:
   // Validates the request before any file is opened, and loads its shot. Throws UsageError, InputError, MeaningError
   // and ResourceError, each with one sentence that says what was found and what was expected.
-  //   sink  takes notes, one sentence at a time: what was inferred and how to say otherwise
-  explicit Compositor(const Request& request, std::function<void(const std::string&)> sink = nullptr);
+  //   sink   takes notes, one sentence at a time: what was inferred and how to say otherwise
+  //   watch  is told how far a run is, as Journal does it
+  //   kept   of an earlier frame of the shot, so that this one takes over what does not change; null: nothing
+  explicit Compositor(const Request& request, std::function<void(const std::string&)> sink = nullptr,
+                      std::function<void(const std::string&, double)> watch = nullptr,
+                      std::shared_ptr<KeptWork> kept = nullptr);
   ~Compositor();
 
   const Shot& shot() const { return *shot_; }
@@ -49,7 +54,9 @@ class Compositor {
   // Every fragment at pixel centres, in windows that together cover the data window.
   RunCounts listFragments(const Request& request, const ListSink& sink);
   // The opaque picture with the result's beauty in it, and its layers. Returns the notes.
-  std::vector<std::string> write(const std::string& path, const Result& result) const;
+  //   beside  attributes of the header besides attributes()
+  std::vector<std::string> write(const std::string& path, const Result& result,
+                                 const std::map<std::string, std::string>& beside = {}) const;
 
   // What the output's header says of how it was made.
   std::map<std::string, std::string> attributes(const Result& result) const;
@@ -76,7 +83,8 @@ class Compositor {
   Veil paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal, RunCounts& counts);
 
   Journal journal_;
-  Device device_;
+  std::shared_ptr<KeptWork> kept_;
+  Device& device_;
   std::unique_ptr<Shot> shot_;
   mutable ShotFacts facts_;  // with the depths of the layers once a weight has asked
   mutable bool knowsDepths_ = false;

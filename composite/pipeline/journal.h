@@ -37,8 +37,11 @@ class Stages {
 
 class Journal {
  public:
-  //   sink  takes one sentence at a time: what was inferred, left out or clamped
-  explicit Journal(std::function<void(const std::string&)> sink = nullptr) : sink_(std::move(sink)) {}
+  //   sink   takes one sentence at a time: what was inferred, left out or clamped
+  //   watch  is told what is done now, and which share of the whole is done, [0,1]; it may be told often
+  explicit Journal(std::function<void(const std::string&)> sink = nullptr,
+                   std::function<void(const std::string&, double)> watch = nullptr)
+      : sink_(std::move(sink)), watch_(std::move(watch)) {}
   void note(const std::string& sentence) const {
     if (sink_) sink_(sentence);
   }
@@ -47,15 +50,20 @@ class Journal {
   }
   template <class Work>
   auto time(const std::string& stage, Work&& work) {
+    if (watch_) watch_(stage, share_);
     return stages.time(stage, std::forward<Work>(work));
   }
+  // What comes next is known to be this far on.
+  void reached(double share) { share_ = share; }
   // The same sink, with stages of its own.
-  Journal beside() const { return Journal(sink_); }
+  Journal beside() const { return Journal(sink_, watch_); }
 
   Stages stages;
 
  private:
   std::function<void(const std::string&)> sink_;
+  std::function<void(const std::string&, double)> watch_;
+  double share_ = 0.0;
 };
 
 }  // namespace pellucid

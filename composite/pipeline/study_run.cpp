@@ -106,7 +106,8 @@ std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vect
   return candidates;
 }
 
-StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base) {
+StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base,
+                      const std::function<void(std::size_t done, std::size_t all)>& begins) {
   Journal& journal = compositor.journal();
   StudyOutcome outcome;
   outcome.rows.resize(candidates.size());
@@ -116,6 +117,7 @@ StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>&
   std::unique_ptr<FlipReference> flip;
   const std::vector<std::size_t> order = orderOf(candidates);
   for (std::size_t done = 0; done < order.size(); ++done) {
+    if (begins) begins(done, order.size());
     const StudyCandidate& candidate = candidates[order[done]];
     StudyRow& row = outcome.rows[order[done]];
     compositor.light(candidate.request);  // which all rows of as many passes share: it is no cost of a method

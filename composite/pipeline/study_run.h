@@ -29,6 +29,8 @@ struct StudyOutcome {
 };
 // Errors are against the sorted candidate of most passes. The picture of each is that of Compositor::run(): where its
 // weight is fitted, to what it draws itself. Its seconds are without the fit.
-StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base);
+//   begins  is told before each candidate how many are done, of how many; may be null
+StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base,
+                      const std::function<void(std::size_t done, std::size_t all)>& begins = nullptr);
 
 }  // namespace pellucid

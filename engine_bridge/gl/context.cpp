@@ -13,6 +13,7 @@
 
 #include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/gl_objects.h"
+#include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/errors.h"
 
@@ -128,24 +129,36 @@ Opened openAny(int device) {
 namespace {
 
 std::mutex contextsMutex;
-std::unordered_map<EGLContext, gl::Fences*> fencesOfContexts;  // under contextsMutex
+// What belongs to a context as a whole.
+struct OfContext {
+  gl::Fences fences;
+  gl::ProgramCache programs;
+};
+std::unordered_map<EGLContext, OfContext*> knownContexts;  // under contextsMutex
+
+OfContext& ofCurrentContext() {
+  const std::lock_guard lock(contextsMutex);
+  const auto found = knownContexts.find(eglGetCurrentContext());
+  if (found == knownContexts.end()) throw std::logic_error("no context of GlContext is current");
+  return *found->second;
+}
 
 }  // namespace
 
 struct GlContext::Impl {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
-  std::optional<gl::Fences> fences;
+  std::optional<OfContext> own;
 };
 
 GlContext::GlContext(int device) : impl_(std::make_unique<Impl>()) {
   const Opened opened = openAny(device);
   impl_->display = opened.display;
   impl_->context = opened.context;
-  impl_->fences.emplace();
+  impl_->own.emplace();
   {
     const std::lock_guard lock(contextsMutex);
-    fencesOfContexts[impl_->context] = &*impl_->fences;
+    knownContexts[impl_->context] = &*impl_->own;
   }
   if (debugWanted()) {
     glEnable(GL_DEBUG_OUTPUT);
@@ -161,9 +174,9 @@ GlContext::~GlContext() {
   if (current != impl_->context) eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context);
   {
     const std::lock_guard lock(contextsMutex);
-    fencesOfContexts.erase(impl_->context);
+    knownContexts.erase(impl_->context);
   }
-  impl_->fences.reset();
+  impl_->own.reset();
   const bool others = current != impl_->context && current != EGL_NO_CONTEXT;
   eglMakeCurrent(others ? display : impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, others ? current : EGL_NO_CONTEXT);
   eglDestroyContext(impl_->display, impl_->context);
@@ -195,10 +208,11 @@ std::vector<std::string> listDevices() {
 namespace gl {
 
 Fences& fences() {
-  const std::lock_guard lock(contextsMutex);
-  const auto found = fencesOfContexts.find(eglGetCurrentContext());
-  if (found == fencesOfContexts.end()) throw std::logic_error("no context of GlContext is current");
-  return *found->second;
+  return ofCurrentContext().fences;
+}
+
+ProgramCache& programs() {
+  return ofCurrentContext().programs;
 }
 
 void checkGl(std::string_view doing) {

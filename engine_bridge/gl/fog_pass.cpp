@@ -56,7 +56,7 @@ void FogPass::draw(const Fog& fog, const FogFrame& frame) {
   const std::size_t lights = std::max<std::size_t>(fog.lights.size(), 1);
   glNamedBufferData(lights_.name(), static_cast<GLsizeiptr>(lights * sizeof(none)),
                     fog.lights.empty() ? &none : fog.lights.data(), GL_STREAM_DRAW);
-  glUseProgram(programs_.get("gl/fullscreen.vert", "gl/fog.frag", frame.defines).name.name());
+  glUseProgram(programs().get("gl/fullscreen.vert", "gl/fog.frag", frame.defines).name.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, kValuesBlock, values_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLightsBlock, lights_.name());
   glBindTextureUnit(kDensityUnit, density_.name());

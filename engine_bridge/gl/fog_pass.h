@@ -23,7 +23,6 @@ class FogPass {
 
  private:
   void upload(const Fog& fog);
-  ProgramCache programs_;
   Buffer values_, lights_;
   VertexArray noVertices_;
   Texture3d density_, open_;

@@ -76,7 +76,6 @@ class OpaquePass {
   Window display_;
   OpaquePassSettings settings_;
   SceneTextures textures_;
-  ProgramCache programs_;
   std::vector<Placed> placed_;
   std::vector<PunctualLight> lights_;
   std::vector<Drawn> drawn_;
@@ -180,7 +179,7 @@ void OpaquePass::sweep(const char* output, const PunctualLight* light, GLsizei o
     const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
     std::vector<std::string> defines = surfaceDefines(material, drawn.vertexColours, features);
     defines.emplace_back(output);
-    const Program& program = programs_.get("gl/transparent.vert", "gl/opaque.frag", defines);
+    const Program& program = programs().get("gl/transparent.vert", "gl/opaque.frag", defines);
     glUseProgram(program.name.name());
     textures_.bind(material, settings_.filter);
     const MaterialBlock block = materialBlock(material);

@@ -1,4 +1,4 @@
-// GL programs made from shaders/gl, one per set of defines, kept once linked.
+// GL programs made from shaders/gl, one per set of defines, kept once linked: all passes over a context share them.
 #pragma once
 #include <string>
 #include <unordered_map>
@@ -27,5 +27,8 @@ class ProgramCache {
  private:
   std::unordered_map<std::string, Program> programs_;
 };
+
+// Of the context that is current. Throws std::logic_error where GlContext did not make it.
+ProgramCache& programs();
 
 }  // namespace pellucid::gl

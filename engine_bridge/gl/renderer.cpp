@@ -342,7 +342,7 @@ const Program& Renderer::programFor(int primitive, Output output) {
   if (!program) {
     std::vector<std::string> defines = outputDefines(output, features_, settings_);
     defines.insert(defines.end(), shader.surface.begin(), shader.surface.end());
-    program = &programs_.get(kVertexStage, kFragmentStage, defines);
+    program = &programs().get(kVertexStage, kFragmentStage, defines);
   }
   return *program;
 }

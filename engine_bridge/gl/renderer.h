@@ -90,7 +90,6 @@ class Renderer {
   Camera camera_;
   SceneTextures textures_;
   GeometryStream stream_;
-  ProgramCache programs_;
   Buffer frameBuffer_, materialBuffer_, lightBuffer_;
   std::size_t materialStride_ = 0;
   std::vector<Placed> placed_;  // per instance

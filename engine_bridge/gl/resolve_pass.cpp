@@ -101,7 +101,6 @@ void drawBuffers(GLuint framebuffer, GLsizei count) {
 }  // namespace
 
 struct ResolvePass::Impl {
-  gl::ProgramCache programs;
   gl::VertexArray noVertices = gl::VertexArray::make();
   gl::Framebuffer spreadFrame = gl::Framebuffer::make();
   gl::Texture spread[kSpreadPlanes];
@@ -132,7 +131,7 @@ struct ResolvePass::Impl {
   }
 
   const gl::Program& use(const char* stage, const std::vector<std::string>& defines) {
-    const gl::Program& program = programs.get("gl/fullscreen.vert", stage, defines);
+    const gl::Program& program = gl::programs().get("gl/fullscreen.vert", stage, defines);
     glUseProgram(program.name.name());
     const GLint place = glGetUniformLocation(program.name.name(), "spreadLevels");
     if (place >= 0) glUniform4iv(place, static_cast<GLsizei>(levels.size()), &levels[0].x);

@@ -174,7 +174,7 @@ void ShadowDrawer::drawOpaque() {
   glBlendEquation(GL_MIN);
   glDisable(GL_CULL_FACE);
   if (gbuffer_) {
-    const Program& program = programs_.get("gl/picture_mesh.vert", "gl/shadow_opaque.frag", {});
+    const Program& program = programs().get("gl/picture_mesh.vert", "gl/shadow_opaque.frag", {});
     glUseProgram(program.name.name());
     glBindTextureUnit(7, pictureZ_.name());
     glBindSampler(7, 0);
@@ -183,7 +183,7 @@ void ShadowDrawer::drawOpaque() {
     glDrawArrays(GL_TRIANGLES, 0, quads * 6);
     fences().mark();
   } else if (sceneIsOpaque_) {
-    const Program& program = programs_.get(kVertexStage, "gl/shadow_opaque.frag", {"EXACT_COVERAGE"});
+    const Program& program = programs().get(kVertexStage, "gl/shadow_opaque.frag", {"EXACT_COVERAGE"});
     glUseProgram(program.name.name());
     opaqueStream_.sweep(settings_.order, settings_.budgetBytes / 4, [&](const std::vector<ChunkDraw>& draws) {
       for (const ChunkDraw& one : draws) {
@@ -231,7 +231,7 @@ void ShadowDrawer::drawCasters() {
       Look& look = looks_[static_cast<std::size_t>(instance.primitive)];
       if (!look.casts) continue;
       const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(instance.primitive)];
-      if (!look.program) look.program = &programs_.get(kVertexStage, "gl/shadow_caster.frag", look.defines);
+      if (!look.program) look.program = &programs().get(kVertexStage, "gl/shadow_caster.frag", look.defines);
       if (look.program != program) glUseProgram(look.program->name.name());
       program = look.program;
       if (boundMaterial != primitive.material) {

@@ -56,7 +56,6 @@ class ShadowDrawer {
   bool grey_ = true, sceneIsOpaque_ = false;
   SceneTextures textures_;
   GeometryStream stream_, opaqueStream_;
-  ProgramCache programs_;
   std::vector<Look> looks_;
   std::vector<Placed> placed_;
   ShadowFaceJob job_{};
