@@ -12,6 +12,14 @@ namespace {
 constexpr std::uint32_t kUnused = 0xffffffffu;
 constexpr std::size_t kNoAccessor = static_cast<std::size_t>(-1);
 
+// A copy of its own in the place of what is shared; null for what is not there.
+Elements* copied(std::shared_ptr<const Elements>& from) {
+  if (!from) return nullptr;
+  const auto copy = std::make_shared<Elements>(*from);
+  from = copy;
+  return copy.get();
+}
+
 }  // namespace
 
 PrimitiveReader::PrimitiveReader(GltfFile& file, Notes& notes, bool stream)
@@ -118,13 +126,6 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const 
   FileTriangles triangles;
   if (pose.moves()) {
     charge(count * (2 + pose.weights.size()), primitive);
-    std::vector<std::shared_ptr<Elements>> copies;
-    const auto copied = [&copies](Shared& from) {
-      if (!from) return static_cast<Elements*>(nullptr);
-      copies.push_back(std::make_shared<Elements>(*from));
-      from = copies.back();
-      return copies.back().get();
-    };
     PosedAttributes posed;
     posed.positions = copied(positions);
     posed.normals = copied(normals);

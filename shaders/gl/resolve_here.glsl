@@ -47,63 +47,56 @@ OitSums sumsAt(ivec2 pixel) {
 }
 #endif
 
-VeilHere veilAt(ivec2 pixel) {
-  VeilHere veil;
-  veil.kind = 0;
-  veil.resolved.transparent = vec3(0.0f);
-  veil.resolved.transmission = vec3(1.0f);
-  veil.applied = vec4(0.0f);
+// What the layers of a pixel leave of what is behind them all, and whether there are any.
+struct LayersHere {
+  Resolved resolved;
+  bool any;
+};
+
 #if defined(SORTED)
+LayersHere layersAt(ivec2 pixel) {
+  LayersHere layers;
   vec4 light = texelHere(sortedLight, pixel);
-  bool any = light.a != 0.0f;
+  layers.any = light.a != 0.0f;
+  layers.resolved.transparent = light.rgb;
+  layers.resolved.transmission = texelHere(sortedTransmission, pixel).rgb;
+  return layers;
+}
 #elif defined(PUBLISHED)
+LayersHere layersAt(ivec2 pixel) {
+  LayersHere layers;
   PublishedSums sums = publishedAt(pixel);
-  bool any = anyPublished(sums);
+  layers.any = anyPublished(sums);
+  layers.resolved = resolvePublished(sums.numerator, sums.denominator, sums.beta, modulateSelf != 0);
+  return layers;
+}
 #else
+LayersHere layersAt(ivec2 pixel) {
+  LayersHere layers;
   OitSums sums = sumsAt(pixel);
-  bool any = sums.count != 0.0f;
+  layers.any = sums.count != 0.0f;
+#if defined(DECODED_PUBLISHED)
+  layers.resolved = resolvePublished(sums.numerator, sums.denominator.r, sums.depth, modulateSelf != 0);
+#else
+  layers.resolved = resolveSums(sums, modulateSelf != 0);
+#endif
 #ifdef FRONT_TAIL
   FrontTargets nearest = frontAt(pixel);
-  any = any || nearest.radiance.a != 0.0f;
+  layers.any = layers.any || nearest.radiance.a != 0.0f;
+  layers.resolved = frontOverTail(nearest, layers.resolved);
 #ifdef LOW_OVER
   FrontTargets over = overAt(pixel);
-  any = any || over.radiance.a != 0.0f;
+  layers.any = layers.any || over.radiance.a != 0.0f;
+  layers.resolved = frontOverTail(over, layers.resolved);
 #endif
 #endif
+  return layers;
+}
 #endif
-  vec4 front = solidAt(pixel);
-  bool hidesAll = front.a < kNoDepth;
+
 #ifdef SCATTER
-  vec4 path = pathSumsAt(pixel);
-  bool scatters = path.z > 0.0f || path.w > 0.0f;
-  // A solid behind such layers is part of the background that they show.
-  hidesAll = hidesAll && !scatters;
-#endif
-  if (!any && !hidesAll) return veil;
-#if defined(SORTED)
-  veil.resolved.transparent = light.rgb;
-  veil.resolved.transmission = texelHere(sortedTransmission, pixel).rgb;
-  hidesAll = false;  // what is solid lies under the layers already
-#elif defined(PUBLISHED)
-  veil.resolved = resolvePublished(sums.numerator, sums.denominator, sums.beta, modulateSelf != 0);
-#elif defined(DECODED_PUBLISHED)
-  veil.resolved = resolvePublished(sums.numerator, sums.denominator.r, sums.depth, modulateSelf != 0);
-#else
-  veil.resolved = resolveSums(sums, modulateSelf != 0);
-#endif
-#ifdef FRONT_TAIL
-  veil.resolved = frontOverTail(nearest, veil.resolved);
-#ifdef LOW_OVER
-  veil.resolved = frontOverTail(over, veil.resolved);
-#endif
-#endif
-  if (hidesAll) {
-    veil.resolved.transparent = overBackground(veil.resolved, vec3(front));
-    veil.resolved.transmission = vec3(0.0f);
-  }
-  veil.kind = 1;
-#ifdef SCATTER
-  if (!scatters) return veil;
+// What a pixel's layers show of another place than the one behind them.
+vec4 appliedAt(ivec2 pixel, vec4 path, vec3 transmission) {
   LookupChoice choice;
   choice.kernel = lookup.x;
   choice.exact = lookup.y;
@@ -124,10 +117,40 @@ VeilHere veilAt(ivec2 pixel) {
   vec2 depths = vec2(refractionZ, diffuseZ);
 #endif
   vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel);
-  precise vec3 shown = veil.resolved.transmission * throughOnly(veil.resolved.transmission, vec3(seen));
-  precise float hole = meanOf(veil.resolved.transmission) * (1.0f - seen.a);
+  precise vec3 shown = transmission * throughOnly(transmission, vec3(seen));
+  precise float hole = meanOf(transmission) * (1.0f - seen.a);
+  return vec4(shown, hole);
+}
+#endif
+
+VeilHere veilAt(ivec2 pixel) {
+  VeilHere veil;
+  veil.kind = 0;
+  veil.resolved.transparent = vec3(0.0f);
+  veil.resolved.transmission = vec3(1.0f);
+  veil.applied = vec4(0.0f);
+  LayersHere layers = layersAt(pixel);
+  vec4 front = solidAt(pixel);
+  bool hidesAll = front.a < kNoDepth;
+#ifdef SCATTER
+  vec4 path = pathSumsAt(pixel);
+  bool scatters = path.z > 0.0f || path.w > 0.0f;
+  // A solid behind such layers is part of the background that they show.
+  hidesAll = hidesAll && !scatters;
+#endif
+  if (!layers.any && !hidesAll) return veil;
+  veil.resolved = layers.resolved;
+#ifndef SORTED  // where what is solid lies under the layers already
+  if (hidesAll) {
+    veil.resolved.transparent = overBackground(veil.resolved, vec3(front));
+    veil.resolved.transmission = vec3(0.0f);
+  }
+#endif
+  veil.kind = 1;
+#ifdef SCATTER
+  if (!scatters) return veil;
   veil.kind = 2;
-  veil.applied = vec4(shown, hole);
+  veil.applied = appliedAt(pixel, path, veil.resolved.transmission);
 #endif
   return veil;
 }

@@ -127,6 +127,46 @@ WeightSettings seamWeight() {
 // Of offsets in pairs: which way y runs.
 vec4 seamRows() { return vec4(1.0f, ROWS, 1.0f, ROWS); }
 
+// The layer's numbers, brought into their ranges.
+Layer seamLayer(vec3 radiance, float coverage, vec3 transmission, float z) {
+  Layer layer;
+  layer.radiance = clamp(radiance, vec3(0.0f), vec3(1e20f));
+  layer.coverage = clamp(coverage, 0.0f, 1.0f);
+  layer.transmission = clamp(transmission, vec3(0.0f), vec3(1.0f));
+  layer.z = z;
+  return layer;
+}
+
+#if !defined(STAGE_SOLIDS) && !defined(STAGE_FRONT) && !defined(STAGE_RIMS)
+// Into the planes of the layers, or their lists.
+void seamWrite(Layer layer, vec2 offset, float variance, vec4 dispersion) {
+  Scatter scatter;
+  scatter.offset = vec2(offset.x, offset.y * ROWS);
+#ifdef DIFFUSES
+  scatter.variance = variance;
+#else
+  scatter.variance = 0.0f;
+#endif
+#if defined(EXACT)
+  appendLayer(layer, vec4(scatter.offset, scatter.variance, 0.0f), dispersion * seamRows(), uint(pldWeight.w));
+#elif defined(PUBLISHED)
+  writePublished(layer, scatter, seamWeight());
+#else
+#ifdef FRONT_TAIL
+  writeFrontOrTail(layer, seamWeight(), isFront(layer.z, seamFrontZ));
+#else
+  writeSums(layer, seamWeight());
+#endif
+#ifdef SCATTER
+  writeScatter(layer, scatter, dispersion * seamRows());
+#endif
+#ifdef HALF
+  clampToHalf();
+#endif
+#endif
+}
+#endif
+
 // A layer in metres and pixels, for hosts that know its scattering already. What pldWriteFragment() ends in.
 //   offset      float pixels of the stage, y down; (0, 0) does not refract
 //   variance    s^2, pixels^2
@@ -137,11 +177,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
 #ifdef DEPTH_IN_SHADER
   if (z > seamOpaqueZ) discard;
 #endif
-  Layer layer;
-  layer.radiance = clamp(radiance, vec3(0.0f), vec3(1e20f));
-  layer.coverage = clamp(coverage, 0.0f, 1.0f);
-  layer.transmission = clamp(transmission, vec3(0.0f), vec3(1.0f));
-  layer.z = z;
+  Layer layer = seamLayer(radiance, coverage, transmission, z);
 #if defined(STAGE_SOLIDS)
   if (!isSolid(layer.coverage, layer.transmission)) discard;
 #ifdef EXACT
@@ -165,30 +201,7 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
   writeRim(layer, max(seamAround, vec3(0.0f)), seamGradient, seamWeight());
 #endif
 #else
-  Scatter scatter;
-  scatter.offset = vec2(offset.x, offset.y * ROWS);
-#ifdef DIFFUSES
-  scatter.variance = variance;
-#else
-  scatter.variance = 0.0f;
-#endif
-#if defined(EXACT)
-  appendLayer(layer, vec4(scatter.offset, scatter.variance, 0.0f), dispersion * seamRows(), uint(pldWeight.w));
-#elif defined(PUBLISHED)
-  writePublished(layer, scatter, seamWeight());
-#else
-#ifdef FRONT_TAIL
-  writeFrontOrTail(layer, seamWeight(), isFront(z, seamFrontZ));
-#else
-  writeSums(layer, seamWeight());
-#endif
-#ifdef SCATTER
-  writeScatter(layer, scatter, dispersion * seamRows());
-#endif
-#ifdef HALF
-  clampToHalf();
-#endif
-#endif
+  seamWrite(layer, offset, variance, dispersion);
 #endif
 #endif
 }

@@ -50,54 +50,16 @@ PLANE_OUTPUTS                   // solidRadiance: rgb, planar z
 const float kClipNear = 1e-7f;  // as in gbuffer/camera.h
 #endif
 
-void main() {
-  Surface surface = surfaceHere();
-#ifdef OCCLUDED
-  vec2 gradient = coverageGradient(surface.coverage);
-#endif
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  float z = -viewPosition.z;
-#ifdef PROBES
-  if (!isProbe(origin + pixel, band.w)) discard;
-#endif
-  if (outsideTriangle()) discard;
-#ifdef POINTS
-  float square = dot(textureUv.xy, textureUv.xy);
-  if (square >= 1.0f || !(z > 0.0f)) discard;
-  Chord chord = chordOf(square, z, textureUv.z * pointScale, depthBehind(pixel));
-  surface.coverage = ballCoverage(surface.coverage, chord.share);
-  z = chord.z;
-#elif defined(SOFT)
-  surface.coverage *= cardShare(z, depthBehind(pixel), material.particle.x);
-#endif
-  if (!(z > 0.0f) || !(surface.coverage > 0.0f)) discard;
-  if (z > texelFetch(opaqueZ, pixel, 0).r * depthFactor) discard;
+// What of a surface's light reaches the eye.
+struct Reflected {
+  vec3 light;             // all of it
+  vec3 direct, indirect;  // of lamps, of the surroundings: what occlusion tells apart
+  float cosEye;
+};
 
-  float cosEye = 1.0f;
-  vec3 reflected = vec3(0.0f);
-#ifdef UNLIT
-  reflected = surface.baseColor;
-#elif defined(PARTICLE)
-  vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
-  vec3 around = vec3(0.0f);
-#ifdef SURROUNDINGS
-  around = surroundings.rgb;
-#endif
-#ifdef ENVIRONMENT
-  around += environmentMean();
-#endif
-  reflected = scatteredByParticle(surface.baseColor, around, toEye);
-#else
-  vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
-  vec3 normal = normalHere(toEye);
-  cosEye = clamp(dot(normal, toEye), PLD_GRAZING, 1.0f);
-  vec3 direct = vec3(0.0f), indirect = vec3(0.0f);
-#ifdef SURROUNDINGS
-  indirect = reflectSurroundings(surface, cosEye) * surroundings.rgb;
-#endif
-#ifdef ENVIRONMENT
-  indirect += environmentReflected(surface, normal, toEye, cosEye);
-#endif
+#if !defined(UNLIT) && !defined(PARTICLE)
+vec3 directHere(Surface surface, vec3 normal, vec3 toEye, float z, ivec2 pixel) {
+  vec3 direct = vec3(0.0f);
 #ifdef LIGHTS
 #ifdef SHADOW_RAYS
   int traced = tracedPlace(pixel, identityOf(instanceIdentity, triangleNumber), z, lightCount);
@@ -112,24 +74,49 @@ void main() {
     direct += reflectTowardsEye(surface, normal, toEye, arriving.toLight) * arriving.irradiance;
   }
 #endif
-#ifdef OCCLUDED
-  reflected = occludedLight(direct, indirect, occlusionHere(surface.coverage, gradient, z, pixel), diffusion.w);
-#else
-  reflected = direct + indirect;
+  return direct;
+}
 #endif
-#endif
-  Layer layer = layerOf(surface, reflected, cosEye, z, material.covering.g != 0.0f);
-  layer.radiance = min(layer.radiance, vec3(PLD_BRIGHTEST));
-  bool hidesAll = isSolid(layer.coverage, layer.transmission);
 
-#ifdef OUTPUT_SOLID
-  if (!hidesAll) discard;
-  solidRadiance = vec4(layer.radiance, z);
-  gl_FragDepth = kClipNear / z;
-#else
-#ifdef SOLIDS
-  if (hidesAll || z > texelFetch(solid, pixel, 0).a) discard;
+Reflected reflectedHere(Surface surface, float z, vec2 gradient, ivec2 pixel) {
+  Reflected found;
+  found.light = found.direct = found.indirect = vec3(0.0f);
+  found.cosEye = 1.0f;
+#ifdef UNLIT
+  found.light = surface.baseColor;
+#elif defined(PARTICLE)
+  vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
+  vec3 around = vec3(0.0f);
+#ifdef SURROUNDINGS
+  around = surroundings.rgb;
 #endif
+#ifdef ENVIRONMENT
+  around += environmentMean();
+#endif
+  found.light = scatteredByParticle(surface.baseColor, around, toEye);
+#else
+  vec3 toEye = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
+  vec3 normal = normalHere(toEye);
+  found.cosEye = clamp(dot(normal, toEye), PLD_GRAZING, 1.0f);
+#ifdef SURROUNDINGS
+  found.indirect = reflectSurroundings(surface, found.cosEye) * surroundings.rgb;
+#endif
+#ifdef ENVIRONMENT
+  found.indirect += environmentReflected(surface, normal, toEye, found.cosEye);
+#endif
+  found.direct = directHere(surface, normal, toEye, z, pixel);
+#ifdef OCCLUDED
+  found.light =
+      occludedLight(found.direct, found.indirect, occlusionHere(surface.coverage, gradient, z, pixel), diffusion.w);
+#else
+  found.light = found.direct + found.indirect;
+#endif
+#endif
+  return found;
+}
+
+// What hides nothing behind it completely, into the outputs.
+void writeHere(Layer layer, Surface surface, Reflected reflected, vec2 gradient, ivec2 pixel) {
 #if defined(OUTPUT_SUMS) || defined(OUTPUT_PUBLISHED) || defined(OUTPUT_RIMS)
   WeightSettings settings;
   settings.kind = WEIGHT;
@@ -160,7 +147,7 @@ void main() {
 #elif defined(OUTPUT_RIMS)
 #if defined(OCCLUDED) && !defined(UNLIT)
   if (!isRim(surface.coverage)) discard;
-  writeRim(layer, surface.coverage * (diffusion.w * direct + indirect), gradient, settings);
+  writeRim(layer, surface.coverage * (diffusion.w * reflected.direct + reflected.indirect), gradient, settings);
 #else
   discard;
 #endif
@@ -172,8 +159,47 @@ void main() {
   claimSamples(layer, identityOf(instanceIdentity, triangleNumber), pixel);
 #elif defined(OUTPUT_ADD)
   addVisible(layer, identityOf(instanceIdentity, triangleNumber), pixel);
-#else
+#elif defined(OUTPUT_LIST)
   appendFragment(layer, scatter, dispersion, pixel);
 #endif
+}
+
+void main() {
+  Surface surface = surfaceHere();
+  vec2 gradient = vec2(0.0f);
+#ifdef OCCLUDED
+  gradient = coverageGradient(surface.coverage);
+#endif
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float z = -viewPosition.z;
+#ifdef PROBES
+  if (!isProbe(origin + pixel, band.w)) discard;
+#endif
+  if (outsideTriangle()) discard;
+#ifdef POINTS
+  float square = dot(textureUv.xy, textureUv.xy);
+  if (square >= 1.0f || !(z > 0.0f)) discard;
+  Chord chord = chordOf(square, z, textureUv.z * pointScale, depthBehind(pixel));
+  surface.coverage = ballCoverage(surface.coverage, chord.share);
+  z = chord.z;
+#elif defined(SOFT)
+  surface.coverage *= cardShare(z, depthBehind(pixel), material.particle.x);
+#endif
+  if (!(z > 0.0f) || !(surface.coverage > 0.0f)) discard;
+  if (z > texelFetch(opaqueZ, pixel, 0).r * depthFactor) discard;
+
+  Reflected reflected = reflectedHere(surface, z, gradient, pixel);
+  Layer layer = layerOf(surface, reflected.light, reflected.cosEye, z, material.covering.g != 0.0f);
+  layer.radiance = min(layer.radiance, vec3(PLD_BRIGHTEST));
+  bool hidesAll = isSolid(layer.coverage, layer.transmission);
+#ifdef OUTPUT_SOLID
+  if (!hidesAll) discard;
+  solidRadiance = vec4(layer.radiance, z);
+  gl_FragDepth = kClipNear / z;
+#else
+#ifdef SOLIDS
+  if (hidesAll || z > texelFetch(solid, pixel, 0).a) discard;
+#endif
+  writeHere(layer, surface, reflected, gradient, pixel);
 #endif
 }

@@ -19,10 +19,6 @@ const Allowances kLongFunctions = {
     {"composite/methods/table.cpp rows", 200},          // a table, which grows by rows
     {"gbuffer/producer_rows.cpp filmRenderers", 120},   // likewise
     {"composite/pipeline/refusals.cpp refusals", 120},  // likewise
-    {"engine_bridge/scene/primitives.cpp PrimitiveReader::read", 67},
-    {"shaders/gl/transparent.frag main", 127},
-    {"shaders/gl/resolve_here.glsl veilAt", 90},
-    {"shaders/gl/seam.glsl pldWriteLayer", 64},
 };
 const Allowances kLongFiles = {};
 
