@@ -21,7 +21,8 @@ int passesProbed(const Plan& plan) {
 }
 
 std::size_t probesOf(const Plan& plan) {
-  return passesProbed(plan) == 1 ? kProbes : 2 * kProbes / static_cast<std::size_t>(passesProbed(plan));
+  const std::size_t probes = plan.fog ? kProbes / 4 : kProbes;
+  return passesProbed(plan) == 1 ? probes : 2 * probes / static_cast<std::size_t>(passesProbed(plan));
 }
 
 // The method that mixes a plan's lists, or whose error a plan's certificate bounds.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "composite/colour/config.h"
@@ -182,6 +183,57 @@ TEST_F(ConfigFile, WithoutTheRoleAKnownNameTells) {
   text.replace(text.find("[house_linear]"), 14, "[ACEScg]");
   const ColourConfig told = ColourConfig::read(write(text), "--ocio");
   EXPECT_LT(largestError(told.space("reference").fromRec709, byOpenColorIO()[2].fromRec709), 1e-6);
+}
+
+// A config names its neighbours alone: by dots, by an absolute path, by links to files and folders it leads nowhere
+// else, unless the folder is allowed.
+TEST_F(ConfigFile, NamesOnlyFilesUnderItsFolder) {
+  namespace fs = std::filesystem;
+  const std::string own = folder + "/own", away = folder + "/away";
+  fs::create_directories(own + "/luts");
+  fs::create_directories(away);
+  const char* const cube = "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
+  for (const std::string& file : {own + "/luts/near.cube", away + "/secret.cube"}) std::ofstream(file) << cube;
+  fs::create_symlink(away + "/secret.cube", own + "/luts/link.cube");
+  fs::create_symlink(away, own + "/luts/door");
+  fs::create_symlink(own + "/luts/near.cube", own + "/luts/inner.cube");
+  const auto config = [&](const std::string& name, const std::string& place) {
+    const std::string path = own + "/config.ocio";
+    const std::string file = "!<GroupTransform> {children: [!<FileTransform> {src: " + name + "}]}";
+    std::ofstream(path)
+        << "ocio_profile_version: 2\nsearch_path: luts\nroles:\n  default: lin\ndisplays:\n  d:\n"
+           "    - !<View> {name: v, colorspace: lin}\n"
+        << (place == "look" ? "looks:\n  - !<Look>\n    name: l\n    process_space: lin\n    transform: " + file + "\n"
+                            : "")
+        << (place == "view" ? "view_transforms:\n  - !<ViewTransform>\n    name: t\n"
+                              "    from_scene_reference: " +
+                                  file + "\n"
+                            : "")
+        << "colorspaces:\n  - !<ColorSpace>\n    name: lin\n"
+        << (place == "space" ? "    from_scene_reference: " + file + "\n" : "")
+        << (place == "named" ? "named_transforms:\n  - !<NamedTransform>\n    name: n\n    transform: " + file + "\n"
+                             : "");
+    return path;
+  };
+  for (const char* place : {"space", "look", "view", "named"}) {
+    for (const std::string& name :
+         {std::string("near.cube"), std::string("inner.cube"), std::string("../luts/near.cube")})
+      EXPECT_NO_THROW(ColourConfig::read(config(name, place), "--ocio")) << place << " " << name;
+    for (const std::string& name :
+         {std::string("../../away/secret.cube"), away + "/secret.cube", std::string("link.cube"),
+          std::string("door/secret.cube"), std::string("./../luts/../../away/secret.cube")}) {
+      const std::string path = config(name, place);
+      try {
+        ColourConfig::read(path, "--ocio");
+        FAIL() << place << " " << name;
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("--asset-root"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("secret.cube"), std::string::npos) << error.what();
+      }
+      EXPECT_NO_THROW(ColourConfig::read(path, "--ocio", away)) << place << " " << name;
+    }
+  }
+  EXPECT_THROW(ColourConfig::read(config("near.cube", "space"), "--ocio", folder + "/none"), InputError);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "gbuffer/errors.h"
@@ -87,6 +88,58 @@ TEST(Display, WhatThereIsNotIsRefused) {
       FAIL() << choice.display;
     } catch (const UsageError& error) {
       EXPECT_NE(std::string(error.what()).find("expected one of sRGB"), std::string::npos) << error.what();
+    }
+  }
+}
+
+// A look stands in the place of the view's own, in its own space: here half the light.
+TEST(Display, LooksTakeThePlaceOfTheViews) {
+  const std::string path = freshFolder("truth-look") + "/config.ocio";
+  std::ofstream(path) << R"(ocio_profile_version: 2
+roles:
+  aces_interchange: reference
+  default: reference
+  scene_linear: reference
+displays:
+  screen:
+    - !<View> {name: plain, colorspace: reference}
+    - !<View> {name: dim, colorspace: reference, looks: quarter}
+    - !<View> {name: raw, colorspace: data}
+looks:
+  - !<Look>
+    name: half
+    process_space: reference
+    transform: !<CDLTransform> {slope: [0.5, 0.5, 0.5]}
+  - !<Look>
+    name: quarter
+    process_space: reference
+    transform: !<CDLTransform> {slope: [0.25, 0.25, 0.25]}
+colorspaces:
+  - !<ColorSpace>
+    name: reference
+  - !<ColorSpace>
+    name: data
+    isdata: true
+)";
+  const ColourConfig config = ColourConfig::read(path, "--ocio");
+  const ColourSpace space = spaceNamed("ACES2065-1");
+  const struct {
+    const char *view, *look;
+    float factor;
+  } rows[] = {{"plain", "", 1}, {"plain", "half", 0.5f}, {"dim", "", 0.25f}, {"dim", "half", 0.5f}};
+  for (const auto& row : rows) {
+    Image<glm::vec3> shown(1, 1, glm::vec3(0.2f, 0.4f, 0.8f));
+    DisplayTransform(config, {"screen", row.view, 0.0, row.look}, space).apply(shown);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(shown[0][c], row.factor * glm::vec3(0.2f, 0.4f, 0.8f)[c], 1e-5f) << row.view << " " << row.look;
+  }
+  for (const DisplayChoice& choice :
+       {DisplayChoice{"screen", "plain", 0.0, "third"}, DisplayChoice{"screen", "raw", 0.0, "half"}}) {
+    try {
+      checkDisplay(config, choice);
+      FAIL() << choice.look;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("--look"), std::string::npos) << error.what();
     }
   }
 }
