@@ -114,6 +114,7 @@ void addComposite(CLI::App& app) {
   RenderVerb what;
   what.defaultPasses = kDefaultPasses;
   what.allViews = true;
+  what.blurs = true;
   flags->render.addTo(*verb, what);
   verb->add_option("-o,--output", flags->output, "EXR to write")->required();
   flags->preview.addTo(*verb);

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/gbuffer_blur.h"
 #include "composite/cli/gbuffer_render.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
@@ -34,9 +36,12 @@ void gbuffer(const GbufferFlags& flags) {
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
+  const std::optional<ShotMoment> moment = playAnimations(flags.time.time(), options);
   const ColourSpace space = spaceToRender(flags);
   flags.preview.check(flags.colour.request());
-  Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
+  Scene scene;
+  const auto files =
+      stages.time("read scene", [&] { return std::make_unique<SceneFiles>(flags.scenes, options, scene); });
   say(scene.notes);
   say(bringInto(scene, space.fromRec709));
   GBuffer frame;
@@ -50,8 +55,11 @@ void gbuffer(const GbufferFlags& flags) {
   if (opaque == 0) note("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
 
   std::string device = "Embree";
-  const OpaquePlanes planes = flags.renderer == "gl" ? rasterise(flags, scene, camera, window, stages, device)
-                                                     : trace(flags, scene, camera, window, space, stages);
+  const OpaquePlanes planes =
+      renderBlurred(flags, scene, *files, moment, space, camera, [&](const Camera& from, std::optional<int> samples) {
+        return flags.renderer == "gl" ? rasterise(flags, scene, from, window, stages, device)
+                                      : trace(flags, scene, from, window, samples, space, stages);
+      });
   if (flags.renderer == "gl" && !planes.lights.empty()) say("lights without shadows: --renderer embree traces them");
   const std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
   say(stages.time("write", [&] {
@@ -105,6 +113,11 @@ void addGbuffer(CLI::App& app) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_option("--device", flags->device, "EGL device by number, see inspect --devices");
+  flags->time.addTo(*verb);
+  flags->blur.addTo(*verb);
+  verb->add_option("--aa", flags->passes,
+                   "Of --shutter and of the lens: renders at times and points of their own, averaged; without it 16")
+      ->check(CLI::Range(2, 4096));
   flags->colour.addTo(*verb, "Linear space to render in; auto is linear Rec.709, as glTF has it");
   flags->preview.addTo(*verb);
   flags->run.addTo(*verb);

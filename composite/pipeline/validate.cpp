@@ -17,6 +17,8 @@ void validate(const Request& request) {
       throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
   checkTime(request.shot.time);
+  if (request.shutter) checkShutter(*request.shutter);
+  checkLens(request.lens);
   checkColours(request.shot.colour);
   checkShadows(request.shadows);
   checkFoliage(request.foliage);
