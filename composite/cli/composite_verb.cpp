@@ -111,6 +111,7 @@ void CompositeFlags::addTo(CLI::App& verb, bool allViews) {
   RenderVerb what;
   what.defaultPasses = kDefaultPasses;
   what.allViews = allViews;
+  what.blurs = true;
   render.addTo(verb, what);
   verb.add_option("-o,--output", output, "EXR to write")->required();
   preview.addTo(verb);

@@ -32,6 +32,17 @@ class SlowRender {
 
 }  // namespace
 
+std::optional<ShotMoment> playAnimations(const ShotTime& time, SceneOptions& options) {
+  checkTime(time);
+  const std::optional<ShotMoment> moment = momentOf(time, {});
+  options.animations = time.animations;
+  options.secondsBy = moment ? moment->origin : "--frame N or --time SECONDS plays them";
+  if (moment) options.seconds = moment->seconds;
+  if (!moment && !time.none() && (!time.animations.empty() || time.framesPerSecond || time.offset))
+    throw UsageError("--animation, --fps and --time-offset: found no time, expected --frame N or --time SECONDS");
+  return moment;
+}
+
 Window parseSize(const std::string& text) {
   int width = 0, height = 0;
   const char* end = text.data() + text.size();
@@ -46,7 +57,8 @@ Window parseSize(const std::string& text) {
 }
 
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   const ColourSpace& space, const std::function<void(double)>& told, Stages& stages) {
+                   std::optional<int> samples, const ColourSpace& space, const std::function<void(double)>& told,
+                   Stages& stages) {
   if (flags.textureFilter == "mipmap")
     throw UsageError(
         "--texture-filter: found mipmap, expected bilinear or nearest with --renderer embree: its samples filter");
@@ -62,7 +74,7 @@ OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& 
         stages.time("read environment", [&] { return readEnvironment(flags.environment, notes, space.fromRec709); });
   say(notes);
   OpaqueRenderSettings settings;
-  settings.samples = flags.samples.value_or(settings.samples);
+  settings.samples = samples.value_or(settings.samples);
   settings.shadows = flags.shadows != "off";
   settings.aoRadius = static_cast<float>(flags.aoRadius.value_or(static_cast<double>(settings.aoRadius)));
   settings.progress = [notes = std::make_shared<SlowRender>(), told](double done) {

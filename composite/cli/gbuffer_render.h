@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "composite/cli/blur_flags.h"
 #include "composite/cli/colour_flags.h"
 #include "composite/cli/options.h"
 #include "composite/cli/preview_flags.h"
 #include "composite/cli/sequence_flags.h"
+#include "composite/cli/time_flags.h"
 #include "composite/pipeline/journal.h"
 #include "engine_bridge/scene/opaque_planes.h"
 #include "engine_bridge/scene/scene.h"
@@ -20,11 +22,13 @@ namespace pellucid::cli {
 struct GbufferFlags {
   std::vector<std::string> scenes;
   std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter, assetRoot;
-  std::optional<int> samples;
+  std::optional<int> samples, passes;
   std::optional<double> aoRadius;
   std::vector<std::string> overrides;
   double unit = 1.0, lumensPerWatt = 683.0;
   int device = -1;
+  TimeFlags time;
+  BlurFlags blur;
   ColourFlags colour;
   PreviewFlags preview;
   RunFlags run;
@@ -54,12 +58,17 @@ RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages,
 void writePart(const std::string& path, const RenderedPart& part, const std::string& renderer,
                std::map<std::string, std::string> attributes = {});
 
+// The animations of scenes that have no picture yet, whose header could name its frame. Returns when they are played.
+// Throws UsageError.
+std::optional<ShotMoment> playAnimations(const ShotTime& time, SceneOptions& options);
 Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
 
 // Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.
-//   told  the share of the picture that is done; may be null
+//   samples  a pixel; else as many as usual
+//   told     the share of the picture that is done; may be null
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   const ColourSpace& space, const std::function<void(double)>& told, Stages& stages);
+                   std::optional<int> samples, const ColourSpace& space, const std::function<void(double)>& told,
+                   Stages& stages);
 OpaquePlanes rasterise(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
                        Stages& stages, std::string& device);
 

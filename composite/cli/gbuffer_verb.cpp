@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/gbuffer_blur.h"
 #include "composite/cli/gbuffer_render.h"
 #include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
@@ -50,9 +52,12 @@ RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, co
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
+  const std::optional<ShotMoment> moment = playAnimations(flags.time.time(), options);
   part.space = spaceToRender(flags);
   flags.preview.check(flags.colour.request(), flags.assetRoot);
-  Scene scene = stages.time("read scene", [&] { return loadScene(flags.scenes, options); });
+  Scene scene;
+  const auto files =
+      stages.time("read scene", [&] { return std::make_unique<SceneFiles>(flags.scenes, options, scene); });
   say(scene.notes);
   say(bringInto(scene, part.space.fromRec709));
   GBuffer frame;
@@ -66,8 +71,11 @@ RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, co
   });
   if (part.opaqueInstances == 0)
     note("{}: nothing opaque is in the scene: the picture shows the surroundings", flags.scenes[0]);
-  part.planes = flags.renderer == "gl" ? rasterise(flags, scene, part.camera, part.window, stages, part.device)
-                                       : trace(flags, scene, part.camera, part.window, part.space, told, stages);
+  part.planes = renderBlurred(
+      flags, scene, *files, moment, part.space, part.camera, [&](const Camera& from, std::optional<int> samples) {
+        return flags.renderer == "gl" ? rasterise(flags, scene, from, part.window, stages, part.device)
+                                      : trace(flags, scene, from, part.window, samples, part.space, told, stages);
+      });
   if (flags.renderer == "gl" && !part.planes.lights.empty())
     say("lights without shadows: --renderer embree traces them");
   part.lights = part.planes.lights.size();
@@ -120,6 +128,11 @@ void addGbuffer(CLI::App& app) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_option("--device", flags->device, "EGL device by number, see inspect --devices");
+  flags->time.addTo(*verb);
+  flags->blur.addTo(*verb);
+  verb->add_option("--aa", flags->passes,
+                   "Of --shutter and of the lens: renders at times and points of their own, averaged; without it 16")
+      ->check(CLI::Range(2, 4096));
   flags->colour.addTo(*verb, "Linear space to render in; auto is linear Rec.709, as glTF has it");
   flags->preview.addTo(*verb);
   flags->run.addTo(*verb);

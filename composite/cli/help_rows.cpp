@@ -4,7 +4,7 @@ namespace pellucid::cli {
 namespace {
 
 constexpr const char *kCommon = "Most used", *kInput = "Input", *kPicture = "Picture", *kMethod = "Method",
-                     *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air", *kTime = "Time",
+                     *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air", *kTime = "Time and lens",
                      *kQuality = "Quality", *kOutput = "Output", *kThresholds = "Thresholds", *kRunning = "Running";
 
 // In the order in which a group lists them.
@@ -83,6 +83,13 @@ const std::vector<HelpRow> kRows{
     {"--fps", kTime, "N"},
     {"--time-offset", kTime, "SECONDS"},
     {"--animation", kTime, "NAME"},
+    {"--shutter", kTime, "OPEN:CLOSE"},
+    {"--camera-motion", kTime, ""},
+    {"--lens-radius", kTime, "METRES"},
+    {"--f-stop", kTime, "N"},
+    {"--focal-length", kTime, "MM"},
+    {"--focus", kTime, "METRES|auto"},
+    {"--lens-blades", kTime, "N"},
     {"--tolerance", kQuality, "E"},
     {"--low-res", kQuality, ""},
     {"--mask", kQuality, ""},

@@ -53,6 +53,7 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
     verb.add_option("--aa", passes, "Jittered passes, averaged; 1 samples pixel centres")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
+  if (what.blurs) blur.addTo(verb);
   if (what.edges)
     edgesOption_ = verb.add_option("--edges", edges,
                                    "Pixels that the renderer filtered over an edge: resolve takes them apart into "
@@ -123,6 +124,8 @@ Request RenderFlags::request() const {
   request.shot.read = read.options();
   scene.into(request);
   request.shot.time = time.time();
+  request.shutter = blur.shutterAsked();
+  request.lens = blur.lens();
   paintInto(request);
   scatter.into(request);
   lookup.into(request);

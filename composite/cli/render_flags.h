@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "composite/cli/blur_flags.h"
 #include "composite/cli/fog_flags.h"
 #include "composite/cli/foliage_flags.h"
 #include "composite/cli/layer_flag.h"
@@ -23,6 +24,7 @@ struct RenderVerb {
   bool precision = true;  // one tier
   bool passes = true;     // --aa with one number
   bool edges = true;      // --edges
+  bool blurs = false;     // --shutter and the lens
   bool bends = true;      // --refract and --diffusion
   bool resolves = true;   // lookups, --resolve, --self-modulation and --layers
   bool keepsRimsApart = false;
@@ -37,6 +39,7 @@ struct RenderFlags {
   ReadFlags read;
   SceneFlags scene;
   TimeFlags time;
+  BlurFlags blur;
   MethodFlags method;
   ScatterFlags scatter;
   LookupFlags lookup;

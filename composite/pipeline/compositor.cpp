@@ -17,6 +17,7 @@
 #include "composite/pipeline/method_file.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
+#include "composite/pipeline/pass_motion.h"
 #include "composite/pipeline/pass_picture.h"
 #include "composite/pipeline/refusals.h"
 #include "composite/pipeline/sums.h"
@@ -88,6 +89,8 @@ struct Compositor::Run {
   const Lighting* lighting = nullptr;
   PassSettings pass;  // with the light
   std::unique_ptr<LayerSources> sources;
+  const Request* request = nullptr;
+  Lens lens;
 };
 
 Compositor::Compositor(const Request& request, std::function<void(const std::string&)> sink,
@@ -129,16 +132,16 @@ TransparentPass* Compositor::triangles() {
   return triangles_.get();
 }
 
-const DepthPlanes* Compositor::depthPlanes(int passes) {
-  if (passes == 1 || shot_->deepOpaque) return nullptr;
+const DepthPlanes* Compositor::depthPlanes(const Plan& plan) {
+  if ((plan.passes == 1 && !plan.pictureMoves) || shot_->deepOpaque) return nullptr;
   if (!depthPlanes_)
     depthPlanes_ = journal_.time("depth planes",
                                  [&] { return std::make_unique<DepthPlanes>(shot_->opaque.gbuffer, shot_->camera); });
   return depthPlanes_.get();
 }
 
-const std::vector<EdgePixel>& Compositor::edges() {
-  if (!edges_) edges_ = journal_.time("edges", [&] { return edgePixels(shot_->opaque.gbuffer, *depthPlanes(2)); });
+const std::vector<EdgePixel>& Compositor::edges(const Plan& plan) {
+  if (!edges_) edges_ = journal_.time("edges", [&] { return edgePixels(shot_->opaque.gbuffer, *depthPlanes(plan)); });
   return *edges_;
 }
 
@@ -146,7 +149,7 @@ std::unique_ptr<EdgePasses> Compositor::edgePasses(const Plan& plan) {
   if (!plan.edges) return nullptr;
   std::vector<glm::dvec2> samples;
   for (int i = 0; i < plan.passes; ++i) samples.push_back(samplePass(plan.pass, i, plan.passes).sample);
-  return std::make_unique<EdgePasses>(edges(), std::move(samples));
+  return std::make_unique<EdgePasses>(edges(plan), std::move(samples));
 }
 
 const Lighting& Compositor::lightOf(const Request& request) {
@@ -160,7 +163,14 @@ const Lighting& Compositor::lightOf(const Request& request) {
 Compositor::Run Compositor::prepare(const Request& request) {
   Run run;
   run.plan = plan(request);
+  run.request = &request;
   journal_.note(run.plan.notes);
+  if (request.shutter && request.shutter->opens() && !shot_->moment)
+    throw MeaningError(
+        fmt::format("{}: --shutter: found no frame in its header (Frame or timeCode), expected one, or --frame N or "
+                    "--time SECONDS",
+                    request.shot.opaque));
+  run.lens = lensOf(request.lens, shot_->opaque.document, shot_->opaque.gbuffer, shot_->camera, journal_);
   run.lighting = &lightOf(request);
   run.pass = run.plan.pass;
   run.lighting->applyTo(run.pass, *shot_);
@@ -182,19 +192,23 @@ Compositor::Run Compositor::prepare(const Request& request) {
 Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal,
                        RunCounts& counts) {
   const std::unique_ptr<EdgePasses> edges = edgePasses(plan);
-  PassPicture moving(run.lighting->picture, depthPlanes(plan.passes), edges.get(), triangles(), shot_->camera);
+  PassMotion motion(*run.request, plan, run.lens, *shot_, triangles(), device_);
+  PassPicture moving(run.lighting->picture, depthPlanes(plan), edges.get(), triangles(), shot_->camera);
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
   VeilMean mean;
   do {
     mean = VeilMean();
     for (int i = 0; i < plan.passes; ++i) {
-      const PassSettings sample = samplePass(pass, i, plan.passes);
+      PassSettings sample = samplePass(pass, i, plan.passes);
       journal.reached(static_cast<double>(i) / plan.passes);
-      moving.moveTo(sample.sample, i);
+      if (motion.moves()) journal.time("pose", [&] { motion.moveTo(i, sample); });
+      moving.moveTo(sample.sample, i, motion.picture());
+      motion.occlude(*moving.picture().gbuffer, sample);
       Veil veil = painter->paint(sample, i);
       journal.time("average", [&] {
         if (edges) edges->weigh(i, veil);
+        motion.relight(veil, *run.lighting->picture.gbuffer);
         mean.add(std::move(veil));
       });
     }
@@ -203,6 +217,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& ru
   return journal.time("average", [&] {
     Veil veil = mean.finish();
     if (edges) edges->finish(veil);
+    motion.finish(veil);
     painter->finish(veil);
     return veil;
   });
@@ -276,7 +291,7 @@ Result Compositor::painted(const Request& request, double holdTo) {
   result.layers = veilLayers(request.layers, result.veil);
   result.layers.insert(result.layers.end(), run.lighting->shadows.layers.begin(), run.lighting->shadows.layers.end());
   if (asks(request.layers, LayerName::edges))
-    result.layers.push_back(edgesLayer(gbuffer, run.plan.edges ? &edges() : nullptr));
+    result.layers.push_back(edgesLayer(gbuffer, run.plan.edges ? &edges(run.plan) : nullptr));
   if (wantsPlanes(request.layers)) {
     RunCounts unused;
     const Plan sums = sumsPlanOf(run.plan, facts_);
@@ -307,7 +322,7 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
   Plan sums = sumsPlanOf(run.plan, facts_);
   sums.heldOut = run.plan.heldOut;
   const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
-  PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), edges.get(), triangles(), shot_->camera);
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), triangles(), shot_->camera);
   const GBuffer& moved = *moving.picture().gbuffer;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {

@@ -69,8 +69,8 @@ class Compositor {
   const Lighting& lightOf(const Request& request);
   TransparentPass* triangles();
   // Of the picture's depth, for passes away from pixel centres; null for a deep picture, whose samples have no planes.
-  const DepthPlanes* depthPlanes(int passes);
-  const std::vector<EdgePixel>& edges();                     // of the picture
+  const DepthPlanes* depthPlanes(const Plan& plan);
+  const std::vector<EdgePixel>& edges(const Plan& plan);     // of the picture
   std::unique_ptr<EdgePasses> edgePasses(const Plan& plan);  // null where the plan takes no edge apart
   Run prepare(const Request& request);
   // By one method.

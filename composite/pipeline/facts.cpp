@@ -13,6 +13,8 @@ ShotFacts factsOf(const Shot& shot) {
   facts.height = shot.opaque.gbuffer.data.height();
   facts.hasScene = shot.hasScene;
   facts.hasCamera = shot.hasCamera;
+  facts.moves = shot.moment && shot.files && shot.files->moves();
+  facts.cameraMoves = facts.moves && shot.sceneCamera;
   facts.deepPicture = shot.deepOpaque != nullptr;
   facts.deepFiles = shot.deep.size();
   facts.deepScatters =

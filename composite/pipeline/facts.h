@@ -10,6 +10,8 @@ struct ShotFacts {
   int width = 0, height = 0;  // of the data window
   bool hasScene = true;       // glTF among the inputs
   bool hasCamera = true;
+  bool moves = false;                      // an animation is played
+  bool cameraMoves = false;                // and the camera may be among what it moves
   bool deepPicture = false;                // each sample of the opaque picture holds layers out on its own
   std::size_t deepFiles = 0;               // with transparent samples
   bool deepScatters = false;               // they say how they refract and diffuse

@@ -1,10 +1,19 @@
 #include "composite/pipeline/pass_picture.h"
 
+#include "composite/pipeline/lens.h"
+#include "gbuffer/moved_depth.h"
+
 namespace pellucid {
 
 PassPicture::PassPicture(const LitPicture& centres, const DepthPlanes* planes, const EdgePasses* edges,
                          TransparentPass* triangles, const Camera& camera)
-    : centres_(centres), planes_(planes), edges_(edges), triangles_(triangles), camera_(camera), picture_(centres) {
+    : centres_(centres),
+      planes_(planes),
+      edges_(edges),
+      triangles_(triangles),
+      taken_(camera),
+      camera_(camera),
+      picture_(centres) {
   if (!planes_) return;
   moved_ = *centres.gbuffer;
   picture_.gbuffer = &moved_;
@@ -17,9 +26,20 @@ PassPicture::~PassPicture() {
   if (planes_ && triangles_) triangles_->over(*centres_.gbuffer, camera_);
 }
 
-void PassPicture::moveTo(glm::dvec2 sample, int pass) {
+void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
+  if (lit) {
+    picture_.centres = lit->centres;
+    picture_.deepOpaque = lit->deepOpaque;
+    if (planes_)
+      moved_.beauty = lit->gbuffer->beauty;
+    else
+      picture_.gbuffer = lit->gbuffer;
+  }
   if (!planes_) return;
-  planes_->depthAt(sample, moved_.viewZ);
+  if (sameView(camera_, taken_))
+    planes_->depthAt(sample, moved_.viewZ);
+  else
+    depthFrom(*planes_, *centres_.gbuffer, taken_, camera_, sample, moved_.viewZ);
   if (edges_) {
     edges_->depthAt(pass, moved_.viewZ);
     if (picture_.passWeight) edges_->weightAt(pass, passWeight_);

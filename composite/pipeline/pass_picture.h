@@ -18,13 +18,15 @@ class PassPicture {
   //   planes     of the picture's depth; null leaves it as it is
   //   edges      pixels of two surfaces, of which a pass sees one; null: none
   //   triangles  drawn over this picture while it lives; null: none
+  //   camera     when this is made, the one that took the picture; at each moveTo(), the one that the pass sees through
   PassPicture(const LitPicture& centres, const DepthPlanes* planes, const EdgePasses* edges, TransparentPass* triangles,
               const Camera& camera);
   ~PassPicture();
   PassPicture(const PassPicture&) = delete;
   PassPicture& operator=(const PassPicture&) = delete;
 
-  void moveTo(glm::dvec2 sample, int pass);
+  //   lit  the picture as the pass's light has it; null: as the first one
+  void moveTo(glm::dvec2 sample, int pass, const LitPicture* lit = nullptr);
   // Of the pass that it was moved to; always the same object.
   const LitPicture& picture() const { return picture_; }
 
@@ -33,6 +35,7 @@ class PassPicture {
   const DepthPlanes* planes_;
   const EdgePasses* edges_;
   TransparentPass* triangles_;
+  const Camera taken_;
   const Camera& camera_;
   GBuffer moved_;
   Image<float> passWeight_;

@@ -102,6 +102,23 @@ int lowResolutionOf(const Request& request, const ShotFacts& facts) {
   return facts.marksLowResolution ? request.lowResolution.factor.value_or(LowResolutionRequest::kDefault) : 1;
 }
 
+bool movesPicture(const Request& request, const ShotFacts& facts) {
+  const bool byCamera =
+      request.shutter && request.shutter->opens() && facts.cameraMoves && !request.shutter->holdsCamera;
+  return byCamera || (request.lens.on() && request.lens.radius.value_or(1.0) > 0.0);
+}
+
+void noteBlur(const Request& request, const ShotFacts& facts, Plan& plan) {
+  if (request.shutter && request.shutter->opens() && !facts.moves)
+    plan.notes.emplace_back("--shutter: nothing in the glTF moves, so that every pass sees the same");
+  if (!plan.pictureMoves) return;
+  plan.notes.emplace_back(
+      "the picture's one colour and one depth a pixel stand for all that passed there: what it shows in focus and at "
+      "rest is composited exactly, and blurred things by the depth that the file gives them");
+  if (request.edges == EdgeRule::resolve)
+    plan.notes.emplace_back("--edges resolve: the picture's edges move with the camera, and are not taken apart");
+}
+
 }  // namespace
 
 const char* nameOf(Route route) {
@@ -140,7 +157,10 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   plan.deepFiles = facts.deepFiles > 0;
   plan.fog = request.fog.on();
   plan.passes = request.passes;
-  plan.edges = request.edges.value_or(EdgeRule::resolve) == EdgeRule::resolve && plan.passes > 1 && !plan.heldOut;
+  plan.pictureMoves = movesPicture(request, facts);
+  noteBlur(request, facts, plan);
+  plan.edges = !plan.pictureMoves && request.edges.value_or(EdgeRule::resolve) == EdgeRule::resolve &&
+               plan.passes > 1 && !plan.heldOut;
   if (plan.heldOut && request.edges == EdgeRule::resolve)
     plan.notes.emplace_back("--edges resolve: a deep picture holds the surfaces of its edges apart already");
   plan.lowResolution = lowResolutionOf(request, facts);

@@ -37,6 +37,7 @@ struct Plan {
   bool deepFiles = false;  // among the layers
   bool fog = false;
   int passes = 1;                  // jittered
+  bool pictureMoves = false;       // from pass to pass: the camera moves, or a lens is open
   bool edges = false;              // filtered edges of the picture are taken apart
   int lowResolution = 1;           // pixels per texel of marked materials
   std::uint64_t bytes = 0;         // held at once besides the picture, about

@@ -26,6 +26,9 @@ bool hasSums(const Request& request) {
     return listed->method.name == "weighted" || listed->method.name == "blended";
   return paintsBy<PaintSums>(request) || paintsBy<PaintCheapest>(request);
 }
+bool opensLens(const Request& request) {
+  return request.lens.on() && request.lens.radius.value_or(1.0) > 0.0;
+}
 bool takesExact(const Request& request) {
   if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->takesExact;
   if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
@@ -108,6 +111,12 @@ const std::vector<Refusal>& refusals() {
       {"--samples", "a number", "--aa", "a multiple of --aa", "every pass holds as many samples", tracesSamples},
       {"--edges", "resolve", "--aa 1", "off, or --aa 2 and more", "one pass sees one surface of a pixel",
        [](const Request& r) { return r.edges == EdgeRule::resolve && r.passes == 1; }},
+      {"--edges", "resolve", "--lens-radius or --f-stop", "off", "what is out of focus has no edges to take apart",
+       [](const Request& r) { return r.edges == EdgeRule::resolve && opensLens(r); }},
+      {"--shutter", "a time", "--aa 1", "--aa 2 and more", "each pass has one time",
+       [](const Request& r) { return r.passes == 1 && r.shutter && r.shutter->close > r.shutter->open; }},
+      {"--lens-radius or --f-stop", "a lens", "--aa 1", "--aa 2 and more", "each pass sees from one point of it",
+       [](const Request& r) { return r.passes == 1 && opensLens(r); }},
       {"--gather", "exact", "--diffusion-kernel disc", "fast", "the disc has one gather, and its taps are few",
        [](const Request& r) { return r.lookup.exact && r.lookup.kernel == shading::PLD_DIFFUSE_DISC; }},
       {"--layers", "depth, weight or count", "--precision published", "float or exact", "its targets do not hold them",

@@ -14,6 +14,7 @@
 #include "composite/methods/method.h"
 #include "composite/methods/stochastic.h"
 #include "composite/pipeline/default_method.h"
+#include "composite/pipeline/lens.h"
 #include "composite/pipeline/shot_time.h"
 #include "engine_bridge/scene/fitted_camera.h"
 #include "engine_bridge/scene/gltf.h"
@@ -159,8 +160,10 @@ struct Request {
   std::optional<MethodDecision> decided;  // where nobody asked for a method: why it is this one
   Tier tier = Tier::float32;
   SumsRequest sums;
-  int passes = 1;                 // jittered, averaged
-  std::optional<EdgeRule> edges;  // else resolve, where several passes can be dealt to two surfaces
+  int passes = 1;                  // jittered, averaged
+  std::optional<Shutter> shutter;  // each pass at its own time
+  LensRequest lens;                // each pass from its own point of it
+  std::optional<EdgeRule> edges;   // else resolve, where several passes can be dealt to two surfaces
   TextureFilter filter = TextureFilter::mipmap;
   MaskEdge mask = MaskEdge::smooth;
   ScatterSettings scatter;

@@ -105,23 +105,47 @@ bool isChosen(const CameraChoice& camera) {
 }
 
 // The camera is chosen before depth is converted, which may take it.
-void readPicture(const ShotRequest& request, Shot& shot) {
-  if (request.memory) {
-    shot.lender = request.memory;
-    readMemoryPicture(*shot.lender, shot.opaque);
-    shot.hasCamera = shot.hasScene || shot.opaque.gbuffer.camera || isChosen(request.camera);
-    if (shot.hasCamera) shot.camera = chooseCamera(request.camera, shot.opaque.gbuffer, shot.scene, kMemoryPicture);
-    return;
-  }
+void readMemory(const ShotRequest& request, Shot& shot) {
+  shot.lender = request.memory;
+  readMemoryPicture(*shot.lender, shot.opaque);
+  shot.hasCamera = shot.hasScene || shot.opaque.gbuffer.camera || isChosen(request.camera);
+  if (shot.hasCamera) shot.camera = chooseCamera(request.camera, shot.opaque.gbuffer, shot.scene, kMemoryPicture);
+}
+
+void readPicture(const ShotRequest& request, ExrDocument document, Shot& shot) {
   ReadOptions framing = request.read;
   framing.framingAlone = true;
-  OpaqueFile first = interpretPicture(readWithSides(request.opaque, request.read), framing, nullptr, shot.deepOpaque);
+  OpaqueFile first = interpretPicture(std::move(document), framing, nullptr, shot.deepOpaque);
   // Deep samples lie in the picture's own pixels: they need no camera, but fog does.
   shot.hasCamera = shot.hasScene || first.gbuffer.camera || isChosen(request.camera);
   if (shot.hasCamera)
     shot.camera = chooseCamera(request.camera, first.gbuffer, shot.scene, request.opaque, first.cameraRefusal);
   shot.opaque = interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr,
                                  shot.deepOpaque);
+}
+
+// What the scene is loaded with, at the moment of the picture.
+SceneOptions sceneOptionsOf(const ShotRequest& request, const std::optional<ShotMoment>& moment) {
+  SceneOptions options = request.scene;
+  const ShotTime& time = request.time;
+  options.animations = time.animations;
+  if (moment) {
+    options.seconds = moment->seconds;
+    options.secondsBy = moment->origin;
+    return options;
+  }
+  const bool asked = time.framesPerSecond || time.offset || (!time.animations.empty() && !time.none());
+  if (asked)
+    throw MeaningError(
+        fmt::format("{}: found no frame in its header (Frame or timeCode), expected one for {}, or --frame N or --time "
+                    "SECONDS",
+                    request.opaque,
+                    time.framesPerSecond ? "--fps"
+                    : time.offset        ? "--time-offset"
+                                         : "--animation"));
+  options.secondsBy =
+      time.none() ? "--animation none" : "the picture's header names no frame; --frame N or --time SECONDS plays them";
+  return options;
 }
 
 // What was understood of the picture.
@@ -221,11 +245,20 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   for (const std::string& path : request.inputs) (isExrName(path) ? deep : shot->geometry).push_back(path);
   shot->hasScene = !shot->geometry.empty();
   const WorkingSpace colours(request.colour, request.scene.assetRoot);
-  SceneOptions options = request.scene;
+  ExrDocument document;
+  if (!request.memory)
+    document = journal.time("read picture", [&] { return readWithSides(request.opaque, request.read); });
+  shot->moment = momentOf(request.time, headerTimeOf(document));
+  SceneOptions options = sceneOptionsOf(request, shot->moment);
   if (traced) options.streamBytes = 0;
-  journal.time("read scene", [&] { shot->scene = loadScene(shot->geometry, options); });
+  journal.time("read scene", [&] { shot->files = std::make_unique<SceneFiles>(shot->geometry, options, shot->scene); });
   journal.note(shot->scene.notes);
-  journal.time("read picture", [&] { readPicture(request, *shot); });
+  journal.time("read picture", [&] {
+    request.memory ? readMemory(request, *shot) : readPicture(request, std::move(document), *shot);
+    // A camera of the glTF's own may be animated.
+    shot->sceneCamera = shot->hasCamera && (std::holds_alternative<NamedCamera>(request.camera) ||
+                                            (!isChosen(request.camera) && !shot->opaque.gbuffer.camera));
+  });
   OpaqueFile& picture = shot->opaque;
   picture.space = colours.of(picture.space, request.opaque, picture.notes);
   journal.note(journal.time("read scene", [&] { return bringInto(shot->scene, picture.space.fromRec709); }));

@@ -1,6 +1,7 @@
 // One shot, loaded: the opaque picture, the transparent scene, the camera, and the light around them.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@
 
 namespace pellucid {
 
-// Nothing of it changes once it is loaded; deep files keep their place in themselves as they are read.
+// Nothing of it changes once it is loaded, but for its pose where a glTF of it is animated; deep files keep their place
+// in themselves as they are read.
 struct Shot {
   Shot() = default;
   ~Shot();  // gives back what it borrowed
@@ -21,12 +23,15 @@ struct Shot {
 
   std::shared_ptr<MemoryPicture> lender;  // of the picture's colours and depths; null for those of a file
   OpaqueFile opaque;
+  std::optional<ShotMoment> moment;  // when it was taken; nothing where nobody says
   Scene scene;
+  std::unique_ptr<SceneFiles> files;  // what poses the scene; its moves() says whether anything does
   Camera camera;
   glm::vec3 surroundings{0.0f};
   std::shared_ptr<const Surroundings> environment;  // a picture of them, where a file was given
   std::unique_ptr<DeepOpaque> deepOpaque;           // when the opaque picture is deep; `opaque` is what it flattens to
   bool hasScene = true;                             // false when all transparent inputs are deep files
+  bool sceneCamera = false;                         // the camera is one of the scene's, and moves with it
   bool hasCamera = true;                            // false where deep files alone need none, and none was found
   std::vector<std::string> geometry;                // the glTF files
   std::vector<std::unique_ptr<DeepSource>> deep;    // transparent layers that come as deep EXR

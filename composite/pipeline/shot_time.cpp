@@ -42,6 +42,16 @@ std::optional<ShotMoment> momentOf(const ShotTime& time, const HeaderTime& heade
   return moment;
 }
 
+void checkShutter(const Shutter& shutter) {
+  constexpr double kMostFrames = 1e4;
+  if (!(std::abs(shutter.open) <= kMostFrames && std::abs(shutter.close) <= kMostFrames &&
+        shutter.open <= shutter.close))
+    throw UsageError(
+        fmt::format("--shutter: found {:g}:{:g}, expected OPEN:CLOSE in frames from -1e4 to 1e4, the first "
+                    "not above the second",
+                    shutter.open, shutter.close));
+}
+
 void checkTime(const ShotTime& time) {
   if (time.seconds && time.frame)
     throw UsageError("--time: found it with --frame, expected one of them: each says when the shot is taken");

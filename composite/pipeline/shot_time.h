@@ -17,6 +17,16 @@ struct ShotTime {
   bool none() const { return animations.size() == 1 && animations[0] == "none"; }
 };
 
+// While the shutter is open, in frames around the frame.
+struct Shutter {
+  double open = 0.0, close = 0.0;
+  bool holdsCamera = false;  // only what the camera sees moves
+  bool opens() const { return open != 0.0 || close != 0.0; }
+};
+
+// Throws UsageError for what is not finite, longer than a minute of film, or closes before it opens.
+void checkShutter(const Shutter& shutter);
+
 // A point in the glTF's time.
 struct ShotMoment {
   double seconds = 0.0;

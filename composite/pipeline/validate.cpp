@@ -19,6 +19,8 @@ void validate(const Request& request) {
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
   checkMemoryPicture(request.shot);
   checkTime(request.shot.time);
+  if (request.shutter) checkShutter(*request.shutter);
+  checkLens(request.lens);
   checkColours(request.shot.colour);
   checkShadows(request.shadows);
   checkFoliage(request.foliage);

@@ -147,8 +147,14 @@ bool ChunkCutter::next(ChunkData& chunk) {
 }
 
 GeometryStream::GeometryStream(const Scene& scene, bool opaque) : scene_(scene), opaque_(opaque) {
-  for (const Instance& instance : scene.instances)
-    if (const Primitive* primitive = drawn(scene, instance, opaque)) {
+  forget();
+}
+
+void GeometryStream::forget() {
+  resident_ = false;
+  sceneTriangles_ = sceneInstances_ = 0;
+  for (const Instance& instance : scene_.instances)
+    if (const Primitive* primitive = drawn(scene_, instance, opaque_)) {
       sceneTriangles_ += trianglesOf(*primitive);
       ++sceneInstances_;
     }

@@ -68,6 +68,8 @@ class GeometryStream {
   // same arguments are not uploaded again.
   void sweep(SubmissionOrder order, std::size_t budgetBytes,
              const std::function<void(const std::vector<ChunkDraw>&)>& draw);
+  // The scene has been posed anew: what is resident is no longer what it holds.
+  void forget();
   std::size_t sceneTriangles() const { return sceneTriangles_; }  // that a sweep draws
   std::size_t sceneInstances() const { return sceneInstances_; }  // that they belong to
   std::size_t chunks() const { return chunks_; }                  // of the last sweep

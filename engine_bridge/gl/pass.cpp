@@ -87,6 +87,11 @@ void TransparentPass::over(const GBuffer& gbuffer, const Camera& camera) {
   impl_->camera = camera;
 }
 
+void TransparentPass::pose(const Camera& camera) {
+  impl_->renderer.pose(camera);
+  impl_->camera = camera;
+}
+
 bool TransparentPass::scatters(const PassSettings& settings) const {
   return impl_->renderer.wouldScatter(settings);
 }

@@ -34,18 +34,25 @@ void requireMatch(const GBuffer& gbuffer) {
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
-    : scene_(scene),
-      gbuffer_(&gbuffer),
-      camera_(camera),
-      textures_(scene),
-      stream_(scene),
-      placed_(placeInstances(scene, camera)) {
+    : scene_(scene), gbuffer_(&gbuffer), camera_(camera), textures_(scene), stream_(scene) {
   requireMatch(gbuffer);
   frameBuffer_ = Buffer::make();
   materialBuffer_ = Buffer::make();
   lightBuffer_ = Buffer::make();
+  place();
+}
 
-  const std::vector<PunctualLight> lights = lightBlocks(scene.lights, camera);
+void Renderer::pose(const Camera& camera) {
+  camera_ = camera;
+  textures_.upload();
+  stream_.forget();
+  place();
+}
+
+// What depends on where everything stands.
+void Renderer::place() {
+  placed_ = placeInstances(scene_, camera_);
+  const std::vector<PunctualLight> lights = lightBlocks(scene_.lights, camera_);
   lights_ = static_cast<int>(lights.size());
   fillStorage(lightBuffer_, lights);
 
@@ -53,9 +60,9 @@ Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& cam
   glGetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
   const auto step = static_cast<std::size_t>(alignment);
   materialStride_ = (sizeof(MaterialBlock) + step - 1) / step * step;
-  std::vector<std::uint8_t> materials(materialStride_ * scene.materials.size());
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const MaterialBlock block = materialBlock(scene.materials[i]);
+  std::vector<std::uint8_t> materials(materialStride_ * scene_.materials.size());
+  for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+    const MaterialBlock block = materialBlock(scene_.materials[i]);
     std::memcpy(&materials[i * materialStride_], &block, sizeof(block));
   }
   fillStorage(materialBuffer_, materials);
@@ -85,6 +92,8 @@ void Renderer::classify() {
   std::vector<bool> infers;
   for (const Material& material : scene_.materials)
     infers.push_back(material.transparent() && infersOcclusion(material, scene_));
+  shaders_.clear();
+  needs_[0] = needs_[1] = Needs();
   for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
     const Primitive& primitive = scene_.primitives[i];
     const Material& material = scene_.materials.at(static_cast<std::size_t>(primitive.material));

@@ -23,6 +23,9 @@ class Renderer {
  public:
   Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
 
+  // The scene has been posed anew, or the camera has moved: everything is placed again. Programs and textures stay.
+  void pose(const Camera& camera);
+
   // From now on draws over another picture, from the same place through a lens or a window that may differ.
   void over(const GBuffer& gbuffer, const Camera& camera);
 
@@ -74,6 +77,7 @@ class Renderer {
     bool solids = false, adds = false, refracts = false, diffuses = false, disperses = false;
     bool coloured = false, infers = false;  // transmit colour; have rims whose occlusion is inferred
   };
+  void place();
   void classify();
   Needs needsOf(const PassSettings& settings) const;
   const Program& programFor(int primitive, Output output);

@@ -77,11 +77,15 @@ Image<glm::vec4> weighted(Image<glm::vec4> texels) {
 
 }  // namespace
 
-SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
+SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene), opaque_(opaque) {
+  upload();
+}
+
+void SceneTextures::upload() {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-  for (const Material& material : scene.materials) {
-    if (material.transparent() == opaque) continue;
+  for (const Material& material : scene_.materials) {
+    if (material.transparent() == opaque_) continue;
     const auto references = material.textures();
     for (const TextureRef* reference : references)
       if (const int index = reference->texture; index >= 0 && !ranges_.count(index))
@@ -89,7 +93,7 @@ SceneTextures::SceneTextures(const Scene& scene, bool opaque) : scene_(scene) {
     for (std::size_t slot = 0; slot < references.size(); ++slot) {
       const Key key = keyOf(material, slot);
       if (key.texture < 0 || uploaded_.count(key)) continue;
-      const pellucid::Texture& texture = scene.textures.at(static_cast<std::size_t>(key.texture));
+      const pellucid::Texture& texture = scene_.textures.at(static_cast<std::size_t>(key.texture));
       const Image<glm::vec4>& texels = texture.texels;
       if (std::max(texels.width(), texels.height()) > largest)
         throw ResourceError(fmt::format("{}: texture of {}x{} texels: the GL device holds {} along an edge",

@@ -20,6 +20,8 @@ class SceneTextures {
   // Uploads the textures that transparent materials use, or those that opaque ones use. Throws ResourceError for one
   // that the device cannot hold.
   explicit SceneTextures(const Scene& scene, bool opaque = false);
+  // Uploads what the materials use now and did not use before: of a scene that has been posed anew.
+  void upload();
 
   // Binds a material's textures to their units, as shaders/gl/material.glsl numbers them.
   //   footprint  of a sample, pixels: mip levels are chosen for it
@@ -54,6 +56,7 @@ class SceneTextures {
   void makeMipmaps(const Key& key, Uploaded& uploaded);
 
   const Scene& scene_;
+  bool opaque_;
   std::map<Key, Uploaded> uploaded_;
   std::map<std::pair<int, bool>, bool> weighs_;  // by texture, and whether every alpha passes
   std::map<int, TexelRange> ranges_;

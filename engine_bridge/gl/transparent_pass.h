@@ -68,6 +68,8 @@ class TransparentPass {
   // What accumulate() has left open of the rims when the settings' occlusion has no rims: their light from around, at
   // the same sample. Empty when the settings have no occluders, or no leaf wants some.
   RimPlanes rims(const PassSettings& settings);
+  // The scene that it was made with has been posed anew, or the camera has moved; over() says which picture it sees.
+  void pose(const Camera& camera);
   // From now on draws over another picture, whose camera stands where the first one stood; both must outlive the pass.
   // What a low-resolution pass draws over.
   void over(const GBuffer& gbuffer, const Camera& camera);
