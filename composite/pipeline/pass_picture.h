@@ -18,8 +18,9 @@ class PassPicture {
   //   planes     of the picture's depth; null leaves it as it is
   //   edges      pixels of two surfaces, of which a pass sees one; null: none
   //   triangles  drawn over this picture while it lives; null: none
+  //   area       of which the passes are, display coordinates: depth moves there alone
   PassPicture(const LitPicture& centres, const DepthPlanes* planes, const EdgePasses* edges, TransparentPass* triangles,
-              const Camera& camera);
+              const Camera& camera, const Window& area);
   ~PassPicture();
   PassPicture(const PassPicture&) = delete;
   PassPicture& operator=(const PassPicture&) = delete;
@@ -34,7 +35,8 @@ class PassPicture {
   const EdgePasses* edges_;
   TransparentPass* triangles_;
   const Camera& camera_;
-  GBuffer moved_;
+  Window part_;    // in pixels of the data window
+  GBuffer moved_;  // depth, and what says how to read it
   Image<float> passWeight_;
   LitPicture picture_;
 };
