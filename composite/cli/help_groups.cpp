@@ -43,6 +43,7 @@ const std::vector<HelpRow> kRows{
     {"--working-space", kPicture, "NAME"},
     {"--ocio", kPicture, "CONFIG.ocio"},
     {"--methods", kMethod, "METHOD,..."},
+    {"--repeats", kMethod, "N"},
     {"--precision", kMethod, ""},
     {"--weight", kMethod, "WEIGHT"},
     {"--weight-range", kMethod, "NEAR:FAR"},

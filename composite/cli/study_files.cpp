@@ -39,6 +39,9 @@ nlohmann::json jsonOf(const std::vector<StudyRow>& rows) {
                     {"flip", row.flip},
                     {"notFinite", row.error.nonFinite},
                     {"seconds", row.seconds},
+                    {"spread", row.spread},
+                    {"firstSeconds", row.firstSeconds},
+                    {"peakBytes", row.peakBytes},
                     {"stages", stages},
                     {"bitsPerPixel", row.bits},
                     {"passes", row.passes},
@@ -53,14 +56,14 @@ void writeStudy(const std::string& folder, const std::string& opaque, const Stud
   for (std::size_t i = 0; i < rows.size(); ++i) pictures.push_back({rowName(rows[i]), outcome.pictures[i]});
   const std::string base = folder + "/study.";
   const Plot plot = studyPlot(rows);
-  writeText(base + "txt", studyText(rows));
+  writeText(base + "txt", outcome.machine + "\n\n" + studyText(rows));
   writeText(base + "csv", studyCsv(rows));
   writeText(base + "json", jsonOf(rows).dump(2) + "\n");
   writeText(base + "svg", plotSvg(plot));
   if (!writePlotPng(base + "png", plot)) say("study.png has no labels: no font was found (fonts-dejavu-core)");
   Page page;
   page.title = "What each method pays to miss the truth";
-  page.lines = {opaque + ", weight " + outcome.weight};
+  page.lines = {opaque + ", weight " + outcome.weight, outcome.machine};
   PageTable table{"Error against sorted over", studyHead(), {}};
   for (const StudyRow& row : rows) table.rows.push_back(studyCells(row));
   page.tables.push_back(std::move(table));

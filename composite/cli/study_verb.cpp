@@ -22,6 +22,7 @@ struct StudyFlags {
   RunFlags run;
   std::vector<int> passes{1};
   std::vector<std::string> precisions{"float"};
+  int repeats = 3;
 };
 
 Paint paintOf(const std::string& name, int passes, const StochasticFlags& flags) {
@@ -46,12 +47,12 @@ void study(const StudyFlags& flags) {
   std::error_code error;
   std::filesystem::create_directories(flags.folder, error);
   if (error) throw ResourceError(fmt::format("{}: cannot be made: {}", flags.folder, error.message()));
-  const StudyOutcome outcome = runStudy(compositor, candidates, base);
+  const StudyOutcome outcome = runStudy(compositor, candidates, base, flags.repeats);
   writeStudy(flags.folder, flags.render.opaque, outcome);
   if (flags.run.json)
     fmt::print("{}\n", jsonOf(outcome.rows).dump(2));
   else
-    fmt::print("{}", studyText(outcome.rows));
+    fmt::print("{}\n\n{}", outcome.machine, studyText(outcome.rows));
 }
 
 }  // namespace
@@ -81,6 +82,10 @@ void addStudy(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"float", "exact", "published"}))
+      ->capture_default_str();
+  verb->add_option("--repeats", flags->repeats,
+                   "Timed runs of every row after one that is not counted; the median and its spread are printed")
+      ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb->add_option("--threads", flags->run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
   verb->add_flag("--json", flags->run.json, "Print the table as JSON");

@@ -27,8 +27,10 @@ struct StudyOutcome {
   std::vector<StudyRow> rows;              // in the order of the candidates
   std::vector<Image<glm::vec3>> pictures;  // of each
   std::string weight;                      // that the weighed ones have
+  std::string machine;                     // the device and the threads that rows were timed on, and how
 };
 // Errors are against the sorted candidate of most passes. The picture of each is that of Compositor::run().
-StudyOutcome runStudy(Compositor& compositor, std::vector<StudyCandidate> candidates, const Request& base);
+//   repeats  timed runs of each after one that is not counted, >= 1
+StudyOutcome runStudy(Compositor& compositor, std::vector<StudyCandidate> candidates, const Request& base, int repeats);
 
 }  // namespace pellucid
