@@ -168,7 +168,8 @@ inline void addBody(const float* body, float weight, Float8& row) {
   row += weight * sums;
 }
 
-// Weights of a row's taps within the kernel's reach, 0 beyond; and whether all that lie within it are seen whole.
+// Weights of a row's taps within the kernel's reach, 0 beyond and where nothing diffuses; and whether all the others
+// are seen whole: passesWhole() of each.
 //   begin, end  of the row's taps that are stored
 inline bool weighRow(const PyramidTaps& of, int y, int begin, int end, const float* across, float* weights) {
   const SpreadLevel& texels = of.texels;
@@ -184,8 +185,13 @@ inline bool weighRow(const PyramidTaps& of, int y, int begin, int end, const flo
     const Float8 place = kPlaces + float(x);
     const Float8 dx = place + 0.5f - of.place.x;
     const Float8 r2 = dx * dx + dy * dy;
-    const Int8 near = (r2 <= of.most2) & (place < float(end));
-    missed |= near & ~((rate <= of.rateLimit) & (reach >= of.tailReach));
+    const Int8 near = (r2 <= of.most2) & (place < float(end)) & (reach >= 0.0f);
+    alignas(32) float away[kLanes];
+    std::memcpy(away, &r2, sizeof away);
+    for (float& one : away) one = of.edge * std::sqrt(one) + PLD_SPREAD_PARTS * of.edge;
+    Float8 far;
+    lanes::load(away, far);
+    missed |= near & ~((rate <= of.rateLimit) & ((reach >= of.tailReach) | (reach >= far)));
     weight = near ? weight : Float8{};
     std::memcpy(weights + (x - begin), &weight, sizeof weight);
   }
@@ -200,12 +206,12 @@ inline void addRow(const PyramidTaps& of, int y, int begin, int end, const float
   const float dy = float(y) + 0.5f - of.place.y;
   const SpreadTexel* bodies = texels.texels.row(y - texels.stored.y0) + (begin - texels.stored.x0);
   for (int x = begin; x < end; ++x) {
-    const float dx = float(x) + 0.5f - of.place.x, r2 = dx * dx + dy * dy;
-    if (r2 > of.most2) continue;
     const float weight = weights[x - begin];
-    const SpreadBody& whole = bodies[x - begin].body;
-    if (whole.mass > 0.0f && whole.mostRate <= of.rateLimit && whole.leastReach >= of.tailReach) {
-      addBody(&whole.colour.x, weight, row);
+    if (weight == 0.0f) continue;
+    const float dx = float(x) + 0.5f - of.place.x, r2 = dx * dx + dy * dy;
+    const SpreadBody& all = bodies[x - begin].body;
+    if (passesWhole(all, of.edge * std::sqrt(r2), of.edge, of.tailReach, of.rateLimit)) {
+      addBody(&all.colour.x, weight, row);
       continue;
     }
     SpreadBody body;
