@@ -1,12 +1,23 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "composite/edges.h"
 #include "shaders/shading.h"
 
 namespace pellucid {
+namespace {
+
+// Of an edge pixel in a veil; nothing where the veil ends before it.
+std::optional<glm::ivec2> placeIn(const Veil& veil, const EdgePixel& pixel) {
+  const int x = pixel.x - veil.place.x, y = pixel.y - veil.place.y;
+  if (x < 0 || y < 0 || x >= veil.touched.width() || y >= veil.touched.height()) return std::nullopt;
+  return glm::ivec2(x, y);
+}
+
+}  // namespace
 
 EdgePasses::EdgePasses(std::vector<EdgePixel> pixels, std::vector<glm::dvec2> samples) : samples_(std::move(samples)) {
   const auto count = static_cast<int>(samples_.size());
@@ -61,26 +72,28 @@ void EdgePasses::weightAt(int pass, Image<float>& weight) const {
 void EdgePasses::weigh(int pass, Veil& veil) const {
   if (transparentPicture_) veil.addScatter();
   for (const Edge& edge : edges_) {
-    const EdgePixel& at = edge.pixel;
+    const std::optional<glm::ivec2> at = placeIn(veil, edge.pixel);
+    if (!at) continue;
     const Part part = partOf(edge, pass);
-    veil.light.at(at.x, at.y) *= part.light;
-    veil.transmission.at(at.x, at.y) *= part.transmission;
+    veil.light.at(at->x, at->y) *= part.light;
+    veil.transmission.at(at->x, at->y) *= part.transmission;
     if (!veil.scatters()) continue;
-    glm::vec3& direct = veil.direct.at(at.x, at.y);
+    glm::vec3& direct = veil.direct.at(at->x, at->y);
     const float passed = shading::meanOf(direct);
     direct *= part.transmission;
-    glm::vec4& applied = veil.applied.at(at.x, at.y);
+    glm::vec4& applied = veil.applied.at(at->x, at->y);
     applied *= part.light;
     // compose() lets nothing shine by the pixel's own alpha; here it is that of the surface.
-    applied.a += part.light * passed * (1.0f - part.alpha) - shading::meanOf(direct) * (1.0f - at.alpha);
+    applied.a += part.light * passed * (1.0f - part.alpha) - shading::meanOf(direct) * (1.0f - edge.pixel.alpha);
   }
 }
 
 void EdgePasses::finish(Veil& mean) const {
   for (const Edge& edge : edges_) {
-    const EdgePixel& at = edge.pixel;
-    glm::vec3& transmission = mean.transmission.at(at.x, at.y);
-    transmission = mean.touched.at(at.x, at.y) ? glm::min(transmission, glm::vec3(1.0f)) : glm::vec3(1.0f);
+    const std::optional<glm::ivec2> at = placeIn(mean, edge.pixel);
+    if (!at) continue;
+    glm::vec3& transmission = mean.transmission.at(at->x, at->y);
+    transmission = mean.touched.at(at->x, at->y) ? glm::min(transmission, glm::vec3(1.0f)) : glm::vec3(1.0f);
   }
 }
 

@@ -4,11 +4,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <vector>
 
 #include "composite/denormals.h"
 #include "composite/fold.h"
+#include "composite/lanes.h"
 #include "composite/layer_terms.h"
 #include "shaders/exact_sums.h"
 
@@ -29,7 +31,63 @@ PlaneTerms summed(const std::vector<PlaneTerms>& terms) {
   return sums;
 }
 
+// What scattering reads of a pixel's sums.
+constexpr PlaneSum kScattering[] = {PlaneSum::light, PlaneSum::refraction, PlaneSum::dispersion};
+
+struct ScatteringTerms {
+  glm::vec4 sums[std::size(kScattering)];
+};
+
+glm::vec4 summed(const std::vector<ScatteringTerms>& terms, std::size_t plane) {
+  glm::vec4 largest(0.0f);
+  for (const ScatteringTerms& one : terms) largest = glm::max(largest, glm::abs(one.sums[plane]));
+  if (largest == glm::vec4(0.0f)) return largest;
+  shading::ExactSums sums = shading::exactSums(largest, static_cast<glm::uint>(terms.size()));
+  for (const ScatteringTerms& one : terms) sums = shading::addedTo(sums, one.sums[plane]);
+  return shading::roundedSums(sums);
+}
+
+// One row of the lists' window.
+//   terms  room that is used again
+PLD_CLONES void foldScatteringRow(const FragmentLists& lists, int y, std::vector<ScatteringTerms>& terms,
+                                  OitPlanes& planes) {
+  const int left = lists.window.x0 - planes.data.x0, py = lists.window.y0 - planes.data.y0 + y;
+  const int count = lists.disperses() ? 3 : 2;
+  for (int x = 0; x < lists.window.width(); ++x) {
+    const auto pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
+    float diffuse = std::numeric_limits<float>::infinity();
+    glm::vec4 sums[std::size(kScattering)] = {glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
+    terms.clear();
+    for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
+      if (!takesPart(lists.fragments[i], lists.solid.at(x, y))) continue;
+      LayerTerms one;
+      addScattering(lists, i, one);
+      ScatteringTerms kept;
+      for (int k = 0; k < count; ++k) kept.sums[k] = one.sums[static_cast<std::size_t>(kScattering[k])];
+      terms.push_back(kept);
+      diffuse = std::min(diffuse, one.diffuseZ);
+    }
+    for (int k = 0; k < count && !terms.empty(); ++k) sums[k] = summed(terms, static_cast<std::size_t>(k));
+    planes.light.at(left + x, py) = sums[0];
+    planes.refraction.at(left + x, py) = sums[1];
+    if (planes.disperses()) planes.dispersion.at(left + x, py) = sums[2];
+    planes.diffuseZ.at(left + x, py) = diffuse;
+  }
+}
+
 }  // namespace
+
+bool foldExactScattering(const FragmentLists& lists, OitPlanes& planes) {
+  copySolids(lists, planes);
+  if (lists.disperses()) addDispersionPlane(planes);
+  tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
+    const FlushDenormals flush;
+    std::vector<ScatteringTerms> terms;
+    for (int y = rows.begin(); y != rows.end(); ++y) foldScatteringRow(lists, y, terms, planes);
+  });
+  return anyScatters(lists);
+}
 
 void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation,
                OitPlanes& planes) {

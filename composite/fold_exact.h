@@ -11,4 +11,9 @@ namespace pellucid {
 // thousand, rounded to float.
 void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation, OitPlanes& planes);
 
+// Only what foldScattering() says, with the bits of foldExact(). Whatever the planes hold in the lists' window is
+// replaced, so that planes may be used again; false where nothing there refracts or diffuses.
+//   planes  have those of scattering
+bool foldExactScattering(const FragmentLists& lists, OitPlanes& planes);
+
 }  // namespace pellucid

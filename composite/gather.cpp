@@ -8,37 +8,9 @@
 #include <vector>
 
 #include "composite/denormals.h"
-#include "composite/spread_pyramid.h"
+#include "composite/wide_gather.h"
 
 namespace pellucid {
-namespace shading {
-
-// The shared text of the lookup, with the functions by which it reads the picture.
-struct LookupText {
-  const Backdrop& backdrop;
-  const OitPlanes& planes;
-  std::vector<SpreadLevel> levels = {};  // [0] is level 1
-
-  template <class T>
-  static const T& clampedAt(const Image<T>& image, ivec2 place) {
-    return image.at(std::clamp(place.x, 0, image.width() - 1), std::clamp(place.y, 0, image.height() - 1));
-  }
-  const vec4& backdropColour(ivec2 pixel) const { return clampedAt(backdrop.colour, pixel); }
-  float backdropDepth(ivec2 pixel) const { return clampedAt(backdrop.z, pixel); }
-  float spreadAt(ivec2 pixel) const { return clampedAt(planes.refraction, pixel).w; }
-  const SpreadTexel& spreadTexel(int level, ivec2 texel) const {
-    return levels[static_cast<std::size_t>(level - 1)].clamped(texel);
-  }
-  const SpreadBody& spreadBody(int level, ivec2 texel) const { return spreadTexel(level, texel).body; }
-
-#define PLD_FN inline
-#define precise
-#include "shaders/shared/gather.glsl"
-#undef precise
-#undef PLD_FN
-};
-
-}  // namespace shading
 
 Backdrop backdropOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid) {
   Backdrop backdrop{gbuffer.beauty, gbuffer.viewZ};
@@ -50,49 +22,134 @@ Backdrop backdropOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid) {
   return backdrop;
 }
 
-struct Lookups::Text : shading::LookupText {
-  shading::LookupText::LookupChoice choice = {};
+BackdropView PassBackdrop::of(const GBuffer& gbuffer, const Image<glm::vec4>& solid, glm::ivec2 place) {
+  for (const std::size_t pixel : covered_) {
+    own_.colour[pixel] = gbuffer.beauty[pixel];
+    own_.z[pixel] = gbuffer.viewZ[pixel];
+  }
+  covered_.clear();
+  const auto width = static_cast<std::size_t>(gbuffer.beauty.width());
+  for (int y = 0; y < solid.height(); ++y)
+    for (int x = 0; x < solid.width(); ++x)
+      if (std::isfinite(solid.at(x, y).a))
+        covered_.push_back(static_cast<std::size_t>(place.y + y) * width + static_cast<std::size_t>(place.x + x));
+  if (covered_.empty()) return {gbuffer.beauty, gbuffer.viewZ};
+  if (own_.z.empty()) own_ = {gbuffer.beauty, gbuffer.viewZ};
+  for (const std::size_t pixel : covered_) {
+    const glm::vec4& own =
+        solid.at(static_cast<int>(pixel % width) - place.x, static_cast<int>(pixel / width) - place.y);
+    own_.colour[pixel] = glm::vec4(glm::vec3(own), 1.0f);
+    own_.z[pixel] = std::min(own_.z[pixel], own.a);
+  }
+  return own_;
+}
+
+namespace {
+
+struct Spreading {
+  Window pixels;  // of the planes
+  float most = 0.0f;
 };
 
-Lookups::Lookups(const Backdrop& backdrop, const OitPlanes& planes, const LookupSettings& settings)
-    : text_(new Text{{backdrop, planes}}) {
-  const int width = planes.data.width(), height = planes.data.height();
-  shading::LookupText::LookupChoice& choice = text_->choice;
+// Where the planes diffuse, and how much at most.
+Spreading spreadingOf(const OitPlanes& planes) {
+  const int width = planes.refraction.width(), height = planes.refraction.height();
+  struct Row {
+    int first = 0, end = 0;
+    float most = 0.0f;
+  };
+  std::vector<Row> rows(static_cast<std::size_t>(height));
+  tbb::parallel_for(0, height, [&](int y) {
+    Row& row = rows[static_cast<std::size_t>(y)];
+    row.first = width;
+    for (int x = 0; x < width; ++x) {
+      const float variance = planes.refraction.at(x, y).w;
+      row.most = std::max(row.most, variance);
+      if (!(variance > 0.0f)) continue;
+      row.first = std::min(row.first, x);
+      row.end = x + 1;
+    }
+  });
+  Spreading all{{width, height, 0, 0}, 0.0f};
+  for (int y = 0; y < height; ++y) {
+    const Row& row = rows[static_cast<std::size_t>(y)];
+    if (row.end == 0) continue;
+    all.most = std::max(all.most, row.most);
+    all.pixels = {std::min(all.pixels.x0, row.first), std::min(all.pixels.y0, y), std::max(all.pixels.x1, row.end),
+                  y + 1};
+  }
+  return all.most > 0.0f ? all : Spreading{};
+}
+
+// D^2 of the pixels that diffuse, for the lanes.
+Image<float> varianceOf(shading::LookupText& text) {
+  const Window& pixels = text.diffusing;
+  Image<float> variance(pixels.width() + shading::LookupText::kBeyond, pixels.height());
+  tbb::parallel_for(0, pixels.height(), [&](int row) {
+    for (int x = pixels.x0; x < pixels.x1; ++x) {
+      const glm::ivec2 pixel(x, pixels.y0 + row);
+      variance.at(x - pixels.x0, row) = text.isFiniteColour(text.backdropColour(pixel)) ? text.spreadAt(pixel) : -1.0f;
+    }
+  });
+  return variance;
+}
+
+}  // namespace
+
+namespace shading {
+
+LookupText::LookupText(const BackdropView& seen, const OitPlanes& scattering, const LookupSettings& settings,
+                       ivec2 place) {
+  backdrop = seen;
+  planes = &scattering;
+  placeOfPlanes = place;
   choice.kernel = settings.kernel;
   choice.exact = settings.exact ? 1 : 0;
-  choice.largestSpread = std::hypot(static_cast<float>(width), static_cast<float>(height));
+  choice.largestSpread = std::hypot(static_cast<float>(width()), static_cast<float>(height()));
   choice.levels = 0;
-  if (settings.kernel != shading::PLD_DIFFUSE_GAUSSIAN || settings.exact) return;
-  float most = 0.0f;
-  for (std::size_t i = 0; i < planes.refraction.size(); ++i) most = std::max(most, planes.refraction[i].w);
-  choice.levels = shading::spreadLevel(shading::kernelSpread(most, choice.largestSpread));
+  if (settings.kernel != PLD_DIFFUSE_GAUSSIAN) return;
+  const Spreading spreading = spreadingOf(scattering);
+  diffusing = {spreading.pixels.x0 + place.x, spreading.pixels.y0 + place.y, spreading.pixels.x1 + place.x,
+               spreading.pixels.y1 + place.y};
+  spreadOfTaps = varianceOf(*this);
+  if (settings.exact) return;
+  choice.levels = spreadLevel(kernelSpread(spreading.most, choice.largestSpread));
   for (int k = 1; k <= choice.levels; ++k) {
-    SpreadLevel level((width + (1 << k) - 1) >> k, (height + (1 << k) - 1) >> k);
-    tbb::parallel_for(tbb::blocked_range<int>(0, level.texels.height()), [&](const tbb::blocked_range<int>& rows) {
-      const FlushDenormals flush;
-      for (int y = rows.begin(); y != rows.end(); ++y)
-        for (int x = 0; x < level.texels.width(); ++x)
-          level.texels.at(x, y) =
-              text_->halvedTexel(k, glm::ivec2(x - shading::PLD_SPREAD_MARGIN, y - shading::PLD_SPREAD_MARGIN));
-    });
-    text_->levels.push_back(std::move(level));
+    SpreadLevel level(k, width(), height(), k == 1 ? diffusing : spreadLevels.back().holding);
+    tbb::parallel_for(tbb::blocked_range<int>(level.holding.y0, level.holding.y1),
+                      [&](const tbb::blocked_range<int>& rows) {
+                        const FlushDenormals flush;
+                        for (int y = rows.begin(); y != rows.end(); ++y) wideHalvedRow(*this, k, y, level);
+                      });
+    level.repeat();
+    spreadLevels.push_back(std::move(level));
   }
 }
+
+}  // namespace shading
+
+struct Lookups::Text : shading::LookupText {
+  using LookupText::LookupText;
+};
+
+Lookups::Lookups(const BackdropView& backdrop, const OitPlanes& planes, const LookupSettings& settings,
+                 glm::ivec2 place)
+    : text_(new Text(backdrop, planes, settings, place)) {}
 
 Lookups::~Lookups() = default;
 
 bool Lookups::scattersAt(int x, int y) const {
-  const glm::vec4& refraction = text_->planes.refraction.at(x, y);
+  const glm::vec4& refraction = text_->planes->refraction.at(x, y);
   return refraction.z > 0.0f || refraction.w > 0.0f;
 }
 
 glm::vec4 Lookups::at(int x, int y) const {
-  const OitPlanes& planes = text_->planes;
+  const OitPlanes& planes = *text_->planes;
   const glm::vec4& refraction = planes.refraction.at(x, y);
   const shading::Path path = shading::pathOf(refraction, planes.light.at(x, y).a, planes.diffuseZ.at(x, y));
   const glm::vec4 dispersion =
       planes.disperses() ? shading::dispersionOf(planes.dispersion.at(x, y), refraction.z) : glm::vec4(0.0f);
-  return text_->lookupAt(text_->choice, path, dispersion, glm::ivec2(x, y));
+  return text_->lookupAt(text_->choice, path, dispersion, text_->placeOfPlanes + glm::ivec2(x, y));
 }
 
 }  // namespace pellucid

@@ -3,6 +3,7 @@
 #pragma once
 #include <glm/glm.hpp>
 #include <memory>
+#include <vector>
 
 #include "gbuffer/accum.h"
 #include "gbuffer/gbuffer.h"
@@ -15,6 +16,28 @@ struct Backdrop {
   Image<float> z;           // planar metres, > 0, +inf for nothing
 };
 Backdrop backdropOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid);
+
+// The same, wherever its planes lie.
+struct BackdropView {
+  const Image<glm::vec4>* colour = nullptr;
+  const Image<float>* z = nullptr;
+  BackdropView() = default;
+  BackdropView(const Image<glm::vec4>& colours, const Image<float>& depth) : colour(&colours), z(&depth) {}
+  BackdropView(const Backdrop& backdrop) : colour(&backdrop.colour), z(&backdrop.z) {}  // NOLINT: it is one
+};
+
+// The backdrops of one pass after another before the same picture: that is copied where a pass has solids, once.
+class PassBackdrop {
+ public:
+  // Holds until the next call.
+  //   solid  of a part of the picture
+  //   place  of its first pixel, in pixels of the data window
+  BackdropView of(const GBuffer& gbuffer, const Image<glm::vec4>& solid, glm::ivec2 place);
+
+ private:
+  Backdrop own_;
+  std::vector<std::size_t> covered_;  // pixels of it
+};
 
 struct LookupSettings {
   int kernel = shading::PLD_DIFFUSE_GAUSSIAN;
@@ -31,8 +54,10 @@ inline bool scattersAt(const OitPlanes& planes, int x, int y) {
 // stand in front of the scattering layer count nothing. A pixel that neither refracts nor diffuses gives its own bits.
 class Lookups {
  public:
-  // Both must outlive this. `planes` has the backdrop's size and scatters().
-  Lookups(const Backdrop& backdrop, const OitPlanes& planes, const LookupSettings& settings);
+  // All must outlive this. `planes` scatters() and lies in the backdrop; beyond it nothing scatters.
+  //   place  of the planes' first pixel, in pixels of the backdrop
+  Lookups(const BackdropView& backdrop, const OitPlanes& planes, const LookupSettings& settings,
+          glm::ivec2 place = glm::ivec2(0));
   ~Lookups();
 
   bool scattersAt(int x, int y) const;

@@ -110,23 +110,26 @@ void showThrough(const Lookups& lookups, Veil& veil) {
 
 Veil resolveOver(OitPlanes planes, const ResolveSettings& settings, const LookupSettings& lookup,
                  const GBuffer& background) {
-  if (!planes.scatters()) return resolve(planes, settings);
-  const Backdrop backdrop = backdropOf(background, planes.solid);
+  const glm::ivec2 place(planes.data.x0 - background.data.x0, planes.data.y0 - background.data.y0);
+  PassBackdrop backdrops;
+  const BackdropView backdrop = planes.scatters() ? backdrops.of(background, planes.solid, place) : BackdropView();
   hideSolids(planes);
   Veil veil = resolve(planes, settings);
-  showThrough(Lookups(backdrop, planes, lookup), veil);
+  veil.place = place;
+  if (planes.scatters()) showThrough(Lookups(backdrop, planes, lookup, place), veil);
   return veil;
 }
 
 Picture compose(const Veil& veil, const GBuffer& background) {
   const int width = veil.touched.width(), height = veil.touched.height();
-  Picture picture{background.beauty, veil.touched};
+  Picture picture{background.beauty, Image<std::uint8_t>(background.beauty.width(), background.beauty.height(), 0)};
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < width; ++x) {
         if (!veil.touched.at(x, y)) continue;
-        glm::vec4& pixel = picture.rgba.at(x, y);
+        picture.touched.at(veil.place.x + x, veil.place.y + y) = veil.touched.at(x, y);
+        glm::vec4& pixel = picture.rgba.at(veil.place.x + x, veil.place.y + y);
         shading::Resolved resolved;
         resolved.transparent = veil.light.at(x, y);
         resolved.transmission = veil.transmission.at(x, y);

@@ -32,7 +32,7 @@ void hideSolids(FragmentLists& lists, const OitPlanes& planes);
 // Applies the background to the pixels of the veil that refract or diffuse; the others are left alone.
 void showThrough(const Lookups& lookups, Veil& veil);
 
-// The steps above in their order. The background is looked up where planes scatter and is otherwise not needed.
+// The steps above in their order, of planes of all of the background's window or of a part of it.
 Veil resolveOver(OitPlanes planes, const ResolveSettings& settings, const LookupSettings& lookup,
                  const GBuffer& background);
 

@@ -1,5 +1,8 @@
 #include "composite/veil.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -19,24 +22,63 @@ void Veil::addScatter() {
   applied = Image<glm::vec4>(transmission.width(), transmission.height(), glm::vec4(0.0f));
 }
 
+Veil::Veil(const Window& part, const Window& data) : Veil(part.width(), part.height()) {
+  place = glm::ivec2(part.x0 - data.x0, part.y0 - data.y0);
+}
+
+namespace {
+
+template <class Texel>
+void copyInto(const Image<Texel>& from, glm::ivec2 place, Image<Texel>& to) {
+  for (int y = 0; y < from.height(); ++y)
+    std::copy(from.row(y), from.row(y) + from.width(), to.row(place.y + y) + place.x);
+}
+
+// Calls work(begin, end) for parts of all pixels of a veil.
+template <class Work>
+void overPixels(const Veil& veil, const Work& work) {
+  constexpr std::size_t kGrain = 16384;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, veil.touched.size(), kGrain),
+                    [&](const tbb::blocked_range<std::size_t>& pixels) { work(pixels.begin(), pixels.end()); });
+}
+
+}  // namespace
+
+Veil widened(Veil veil, const Window& data) {
+  if (veil.touched.width() == data.width() && veil.touched.height() == data.height()) return veil;
+  Veil wide(data.width(), data.height());
+  copyInto(veil.light, veil.place, wide.light);
+  copyInto(veil.transmission, veil.place, wide.transmission);
+  copyInto(veil.frontZ, veil.place, wide.frontZ);
+  copyInto(veil.touched, veil.place, wide.touched);
+  if (!veil.scatters()) return wide;
+  wide.addScatter();
+  copyInto(veil.direct, veil.place, wide.direct);
+  copyInto(veil.applied, veil.place, wide.applied);
+  return wide;
+}
+
 void VeilMean::add(Veil sample) {
   ++count_;
   if (count_ == 1) {
     sum_ = std::move(sample);
     return;
   }
+  if (sample.touched.size() != sum_.touched.size() || sample.place != sum_.place)
+    throw std::logic_error("VeilMean: samples of different parts of a picture");
   if (sample.scatters()) sum_.addScatter();
-  if (sum_.scatters())
-    for (std::size_t i = 0; i < sum_.touched.size(); ++i) {
+  overPixels(sum_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && sum_.scatters(); ++i) {
       sum_.direct[i] += sample.scatters() ? sample.direct[i] : sample.transmission[i];
       if (sample.scatters()) sum_.applied[i] += sample.applied[i];
     }
-  for (std::size_t i = 0; i < sum_.touched.size(); ++i) {
-    sum_.light[i] += sample.light[i];
-    sum_.transmission[i] += sample.transmission[i];
-    sum_.frontZ[i] = std::min(sum_.frontZ[i], sample.frontZ[i]);
-    sum_.touched[i] |= sample.touched[i];
-  }
+    for (std::size_t i = begin; i < end; ++i) {
+      sum_.light[i] += sample.light[i];
+      sum_.transmission[i] += sample.transmission[i];
+      sum_.frontZ[i] = std::min(sum_.frontZ[i], sample.frontZ[i]);
+      sum_.touched[i] |= sample.touched[i];
+    }
+  });
 }
 
 Veil VeilMean::finish() {
@@ -44,15 +86,16 @@ Veil VeilMean::finish() {
   Veil mean = std::move(sum_);
   const float share = 1.0f / static_cast<float>(count_);
   if (count_ > 1)
-    for (std::size_t i = 0; i < mean.touched.size(); ++i) {
-      mean.light[i] *= share;
-      mean.transmission[i] *= share;
-    }
-  if (count_ > 1 && mean.scatters())
-    for (std::size_t i = 0; i < mean.touched.size(); ++i) {
-      mean.direct[i] *= share;
-      mean.applied[i] *= share;
-    }
+    overPixels(mean, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        mean.light[i] *= share;
+        mean.transmission[i] *= share;
+      }
+      for (std::size_t i = begin; i < end && mean.scatters(); ++i) {
+        mean.direct[i] *= share;
+        mean.applied[i] *= share;
+      }
+    });
   count_ = 0;
   return mean;
 }

@@ -8,8 +8,10 @@
 
 namespace pellucid {
 
-// Planes of a data window. Where touched is 0 nothing transparent lies and the other planes mean nothing.
+// Planes of a data window or of a part of it, beyond which nothing is. Where touched is 0 nothing transparent lies and
+// the other planes mean nothing.
 struct Veil {
+  glm::ivec2 place{0};            // of the first pixel, in the data window
   Image<glm::vec3> light;         // premultiplied radiance of the layers and of the solid behind them, >= 0
   Image<glm::vec3> transmission;  // of the background, [0,1] per channel; 0 behind a solid
   Image<float> frontZ;            // nearest layer or solid, planar metres, +inf for none
@@ -20,9 +22,14 @@ struct Veil {
 
   Veil() = default;
   Veil(int width, int height);
+  // Of a part of the data window, both in display coordinates.
+  Veil(const Window& part, const Window& data);
   bool scatters() const { return !applied.empty(); }
   void addScatter();  // direct = transmission, applied = 0, unless they are there
 };
+
+// The same in a veil of all of the data window's size.
+Veil widened(Veil veil, const Window& data);
 
 // The mean of equally weighted samples, added in the order they come: N jittered passes become one antialiased veil.
 class VeilMean {

@@ -51,6 +51,16 @@ OitPlanes emptyPublishedPlanes(const Window& display, const Window& data) {
   return planes;
 }
 
+OitPlanes emptyScatterPlanes(const Window& display, const Window& data) {
+  OitPlanes planes;
+  planes.display = display;
+  planes.data = data;
+  planes.light = Image<glm::vec4>(data.width(), data.height(), glm::vec4(0.0f));
+  planes.solid = Image<glm::vec4>(data.width(), data.height(), glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
+  addScatterPlanes(planes);
+  return planes;
+}
+
 void addScatterPlanes(OitPlanes& planes) {
   if (planes.scatters()) return;
   const int width = planes.data.width(), height = planes.data.height();

@@ -60,6 +60,8 @@ struct OitPlanes {
 OitPlanes emptyPlanes(const Window& display, const Window& data);
 // The same of tier "published": beta is 1.
 OitPlanes emptyPublishedPlanes(const Window& display, const Window& data);
+// Those alone that say where a pixel's layers show the background from: light, refraction, diffuseZ and solid.
+OitPlanes emptyScatterPlanes(const Window& display, const Window& data);
 // Gives planes that lack them those of refraction and diffusion, in which nothing scatters.
 void addScatterPlanes(OitPlanes& planes);
 // The same with that of dispersion; scatter planes included.

@@ -157,9 +157,13 @@ DepthPlane DepthPlanes::at(int x, int y) const {
 }
 
 void DepthPlanes::depthAt(glm::dvec2 sample, Image<float>& viewZ) const {
+  depthAt(sample, {0, 0, viewZ.width(), viewZ.height()}, viewZ);
+}
+
+void DepthPlanes::depthAt(glm::dvec2 sample, const Window& part, Image<float>& viewZ) const {
   const glm::dvec2 offset = sample - 0.5;
-  tbb::parallel_for(0, viewZ.height(), [&](int y) {
-    for (int x = 0; x < viewZ.width(); ++x) {
+  tbb::parallel_for(part.y0, part.y1, [&](int y) {
+    for (int x = part.x0; x < part.x1; ++x) {
       const float z = gbuffer_.viewZ.at(x, y);
       viewZ.at(x, y) = std::isfinite(z) ? static_cast<float>(at(x, y).z(offset.x, offset.y)) : z;
     }

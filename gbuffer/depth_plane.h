@@ -33,6 +33,8 @@ class DepthPlanes {
   // The depth of all pixels at one place in each of them.
   //   sample  (0..1, y down), (0.5, 0.5) the centre
   void depthAt(glm::dvec2 sample, Image<float>& viewZ) const;
+  // Of the pixels of a part alone, in pixels of the data window.
+  void depthAt(glm::dvec2 sample, const Window& part, Image<float>& viewZ) const;
 
  private:
   const GBuffer& gbuffer_;

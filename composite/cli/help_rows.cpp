@@ -41,6 +41,7 @@ const std::vector<HelpRow> kRows{
     {"--methods", kMethod, "METHOD,..."},
     {"--preset-model", kMethod, "PAPER"},
     {"--method-from", kMethod, "FILE.exr"},
+    {"--repeats", kMethod, "N"},
     {"--precision", kMethod, ""},
     {"--weight", kMethod, "WEIGHT"},
     {"--weight-range", kMethod, "NEAR:FAR"},

@@ -43,6 +43,9 @@ nlohmann::json jsonOf(const std::vector<StudyRow>& rows, const ColourSpace& spac
                     {"flip", row.flip},
                     {"notFinite", row.error.nonFinite},
                     {"seconds", row.seconds},
+                    {"spread", row.spread},
+                    {"firstSeconds", row.firstSeconds},
+                    {"peakBytes", row.peakBytes},
                     {"stages", stages},
                     {"bitsPerPixel", row.bits},
                     {"passes", row.passes},
@@ -65,14 +68,14 @@ void writeStudy(const std::string& folder, const OpaqueFile& opaque, const Study
   for (std::size_t i = 0; i < rows.size(); ++i) pictures.push_back({rowName(rows[i]), outcome.pictures[i]});
   const std::string base = folder + "/study.";
   const Plot plot = studyPlot(rows);
-  writeText(base + "txt", studyText(rows));
+  writeText(base + "txt", outcome.machine + "\n\n" + studyText(rows));
   writeText(base + "csv", studyCsv(rows));
   writeText(base + "json", jsonOf(rows, opaque.space).dump(2) + "\n");
   writeText(base + "svg", plotSvg(plot));
   if (!writePlotPng(base + "png", plot)) say("study.png has no labels: no font was found (fonts-dejavu-core)");
   Page page;
   page.title = "What each method pays to miss the truth";
-  page.lines = {opaque.document.path, "Errors are measured in " + opaque.space.name + "."};
+  page.lines = {opaque.document.path, "Errors are measured in " + opaque.space.name + ".", outcome.machine};
   for (const StudyRow& row : rows)
     if (!row.weight.empty()) page.lines.push_back(rowName(row) + ": weight " + row.weight);
   PageTable table{"Error against sorted over", studyHead(), {}};

@@ -35,17 +35,18 @@ void study(const StudyFlags& flags, FrameRun& frame, const std::shared_ptr<KeptW
   Compositor compositor(
       base, [](const std::string& note) { say(note); }, watch, kept);
   makeFolder(flags.folder);
-  const StudyOutcome outcome = runStudy(compositor, candidates, base, [&](std::size_t done, std::size_t all) {
+  const auto begins = [&](std::size_t done, std::size_t all) {
     part = 1.0 / static_cast<double>(all);
     before = part * static_cast<double>(done);
-  });
+  };
+  const StudyOutcome outcome = runStudy(compositor, candidates, base, flags.repeats, begins);
   const OpaqueFile& picture = compositor.shot().opaque;
   writeStudy(flags.folder, picture, outcome);
   frame.summary = jsonOf(outcome.rows, picture.space);
   if (flags.run.json)
     fmt::print("{}\n", jsonOf(outcome.rows, picture.space).dump(2));
   else
-    fmt::print("{}", studyText(outcome.rows));
+    fmt::print("{}\n\n{}", outcome.machine, studyText(outcome.rows));
 }
 
 }  // namespace
@@ -72,6 +73,10 @@ void StudyFlags::addTo(CLI::App& verb) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"float", "exact", "published"}))
+      ->capture_default_str();
+  verb.add_option("--repeats", repeats,
+                  "Timed runs of every row after one that is not counted; the median and its spread are printed")
+      ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb.add_option("--threads", run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
   verb.add_flag("--json", run.json, "Print the table as JSON");

@@ -83,6 +83,7 @@ struct StudyFlags {
   RunFlags run;
   std::vector<int> passes{1};
   std::vector<std::string> precisions{"float"};
+  int repeats = 3;
   void addTo(CLI::App& verb);
   Request base() const;                                               // throws UsageError
   std::vector<StudyCandidate> candidates(const Request& base) const;  // throws UsageError

@@ -22,6 +22,7 @@
 #include "composite/pipeline/refusals.h"
 #include "composite/pipeline/sums.h"
 #include "composite/pipeline/weight_file.h"
+#include "engine_bridge/scene/screen_bounds.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/weight_text.h"
 
@@ -189,11 +190,23 @@ Compositor::Run Compositor::prepare(const Request& request) {
   return run;
 }
 
-Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal,
+// All of the picture, but where triangles alone are painted pixel by pixel.
+Window Compositor::paintedArea(const Plan& plan, const Run& run) const {
+  const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
+  const bool byPixels = plan.as<PaintSorted>() || plan.as<PaintListed>() ||
+                        (plan.as<PaintSums>() && !plan.isPublished() && !plan.resolvesOnDevice);
+  const bool alone = run.sources->trianglesAlone() && !run.lighting->fog && plan.lowResolution == 1;
+  if (!byPixels || !alone || plan.heldOut || shot_->deepOpaque) return gbuffer.data;
+  return screenBounds(shot_->scene, shot_->camera, gbuffer);
+}
+
+Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run& run, Journal& journal,
                        RunCounts& counts) {
   const std::unique_ptr<EdgePasses> edges = edgePasses(plan);
   PassMotion motion(*run.request, plan, run.lens, *shot_, triangles(), device_);
-  PassPicture moving(run.lighting->picture, depthPlanes(plan), edges.get(), triangles(), shot_->camera);
+  PassSettings pass = settings;
+  pass.area = motion.moves() ? run.lighting->picture.gbuffer->data : paintedArea(plan, run);
+  PassPicture moving(run.lighting->picture, depthPlanes(plan), edges.get(), triangles(), shot_->camera, pass.area);
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
   VeilMean mean;
@@ -288,6 +301,7 @@ Result Compositor::painted(const Request& request, double holdTo) {
       result.counts.tolerance.measured = brokenPart(result.picture.rgba, exact, tolerance);
     for (const auto& [name, seconds] : truth.stages.seconds()) journal_.stages.add("truth: " + name, seconds);
   }
+  if (!request.layers.empty()) result.veil = widened(std::move(result.veil), gbuffer.data);
   result.layers = veilLayers(request.layers, result.veil);
   result.layers.insert(result.layers.end(), run.lighting->shadows.layers.begin(), run.lighting->shadows.layers.end());
   if (asks(request.layers, LayerName::edges))
@@ -322,7 +336,8 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
   Plan sums = sumsPlanOf(run.plan, facts_);
   sums.heldOut = run.plan.heldOut;
   const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
-  PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), triangles(), shot_->camera);
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), triangles(), shot_->camera,
+                     gbuffer.data);
   const GBuffer& moved = *moving.picture().gbuffer;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {

@@ -80,7 +80,8 @@ class Compositor {
   Choice probed(const Run& run, double tolerance);
   PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, int pass, const Run& run,
                         const LitPicture& picture, const Request& request, RunCounts& counts);
-  Veil paint(const Plan& plan, const PassSettings& pass, const Run& run, Journal& journal, RunCounts& counts);
+  Veil paint(const Plan& plan, const PassSettings& settings, const Run& run, Journal& journal, RunCounts& counts);
+  Window paintedArea(const Plan& plan, const Run& run) const;
 
   Journal journal_;
   std::shared_ptr<KeptWork> kept_;

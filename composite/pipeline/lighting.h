@@ -9,9 +9,9 @@ namespace pellucid {
 
 // The picture as it is lit: the shot's own unless shadows fell on it. All of it outlives the run.
 struct LitPicture {
-  const GBuffer* gbuffer = nullptr;          // its depth is that of where a pass samples the pixels
-  const GBuffer* centres = nullptr;          // the same picture at pixel centres, where its colours are looked up
-  const DeepOpaque* deepOpaque = nullptr;    // null for a flat picture
+  const GBuffer* gbuffer = nullptr;        // its depth is that of where a pass samples the pixels; it may lack colours
+  const GBuffer* centres = nullptr;        // the same picture at pixel centres, where its colours are looked up
+  const DeepOpaque* deepOpaque = nullptr;  // null for a flat picture
   const Image<float>* passWeight = nullptr;  // of the pass in each pixel's mean; null: as much as any other
 };
 

@@ -6,7 +6,7 @@
 namespace pellucid {
 
 PassPicture::PassPicture(const LitPicture& centres, const DepthPlanes* planes, const EdgePasses* edges,
-                         TransparentPass* triangles, const Camera& camera)
+                         TransparentPass* triangles, const Camera& camera, const Window& area)
     : centres_(centres),
       planes_(planes),
       edges_(edges),
@@ -15,7 +15,15 @@ PassPicture::PassPicture(const LitPicture& centres, const DepthPlanes* planes, c
       camera_(camera),
       picture_(centres) {
   if (!planes_) return;
-  moved_ = *centres.gbuffer;
+  const GBuffer& own = *centres.gbuffer;
+  part_ = {area.x0 - own.data.x0, area.y0 - own.data.y0, area.x1 - own.data.x0, area.y1 - own.data.y0};
+  moved_.display = own.display;
+  moved_.data = own.data;
+  moved_.pixelAspect = own.pixelAspect;
+  moved_.hasAlpha = own.hasAlpha;
+  moved_.viewZ = own.viewZ;
+  moved_.depthPrecision = own.depthPrecision;
+  moved_.camera = own.camera;
   picture_.gbuffer = &moved_;
   if (!edges_ || edges_->empty()) return;
   passWeight_ = Image<float>(moved_.data.width(), moved_.data.height(), 1.0f);
@@ -37,7 +45,7 @@ void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
   }
   if (!planes_) return;
   if (sameView(camera_, taken_))
-    planes_->depthAt(sample, moved_.viewZ);
+    planes_->depthAt(sample, part_, moved_.viewZ);
   else
     depthFrom(*planes_, *centres_.gbuffer, taken_, camera_, sample, moved_.viewZ);
   if (edges_) {

@@ -19,8 +19,9 @@ class PassPicture {
   //   edges      pixels of two surfaces, of which a pass sees one; null: none
   //   triangles  drawn over this picture while it lives; null: none
   //   camera     when this is made, the one that took the picture; at each moveTo(), the one that the pass sees through
+  //   area       of which the passes are, display coordinates: depth moves there alone
   PassPicture(const LitPicture& centres, const DepthPlanes* planes, const EdgePasses* edges, TransparentPass* triangles,
-              const Camera& camera);
+              const Camera& camera, const Window& area);
   ~PassPicture();
   PassPicture(const PassPicture&) = delete;
   PassPicture& operator=(const PassPicture&) = delete;
@@ -37,7 +38,8 @@ class PassPicture {
   TransparentPass* triangles_;
   const Camera taken_;
   const Camera& camera_;
-  GBuffer moved_;
+  Window part_;    // in pixels of the data window
+  GBuffer moved_;  // depth, and what says how to read it
   Image<float> passWeight_;
   LitPicture picture_;
 };

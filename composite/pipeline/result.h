@@ -37,9 +37,9 @@ struct Choice {
 
 struct Result {
   Plan plan;          // as it was carried out: with the weight that was fitted
-  Window dataWindow;  // of all planes
-  Veil veil;
-  Picture picture;                       // touched: changed by layers or by shadows
+  Window dataWindow;  // of the picture
+  Veil veil;          // of the part where layers may be; of all of the window where layers of it were asked for
+  Picture picture;    // touched: changed by layers or by shadows
   std::vector<ExtraLayer> layers;        // `shadow`, and those that were asked for
   std::optional<ErrorStatistics> error;  // against the sorted truth, when it was asked for
   std::optional<Choice> choice;          // of --method auto

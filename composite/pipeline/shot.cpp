@@ -104,7 +104,6 @@ bool isChosen(const CameraChoice& camera) {
   return !std::holds_alternative<std::monostate>(camera);
 }
 
-// The camera is chosen before depth is converted, which may take it.
 void readMemory(const ShotRequest& request, Shot& shot) {
   shot.lender = request.memory;
   readMemoryPicture(*shot.lender, shot.opaque);
@@ -112,6 +111,7 @@ void readMemory(const ShotRequest& request, Shot& shot) {
   if (shot.hasCamera) shot.camera = chooseCamera(request.camera, shot.opaque.gbuffer, shot.scene, kMemoryPicture);
 }
 
+// The camera is chosen before depth is converted, which may take it.
 void readPicture(const ShotRequest& request, ExrDocument document, Shot& shot) {
   ReadOptions framing = request.read;
   framing.framingAlone = true;

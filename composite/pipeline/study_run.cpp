@@ -1,14 +1,15 @@
 #include "composite/pipeline/study_run.h"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 
 #include "composite/pipeline/fit.h"
 #include "composite/pipeline/refusals.h"
 #include "composite/study/flip.h"
+#include "composite/study/peak_memory.h"
 #include "gbuffer/weight_text.h"
 
 namespace pellucid {
@@ -62,13 +63,32 @@ Image<glm::vec3> colourOf(const Image<glm::vec4>& picture) {
   return rgb;
 }
 
-// Shaders compile on first use: untimed runs first, by the device's sums and by lists.
-void warmUp(Compositor& compositor, const Request& base) {
-  Request plain = base;
-  plain.sums = {};
-  plain.sums.weight = PassSettings().weight;
-  for (const Tier tier : {Tier::float32, Tier::exact})
-    compositor.run(candidateOf(plain, "phenomenological", PaintSums{}, 1, tier).request);
+double totalOf(const Result& result) {
+  double sum = 0.0;
+  for (const auto& [name, seconds] : result.stages.seconds())
+    if (name != kFitStage) sum += seconds;  // one for a sequence, by --weight-from
+  return sum;
+}
+
+// Runs a request once, when shaders compile, and then some times; the row gets what the run of the median took.
+Result timedRun(Compositor& compositor, const Request& request, int repeats, StudyRow& row) {
+  Result result = compositor.run(request);
+  const double first = totalOf(result);
+  forgetPeakMemory();
+  std::vector<std::pair<double, Stages>> runs;
+  for (int i = 0; i < repeats; ++i) {
+    result = compositor.run(request);
+    runs.emplace_back(totalOf(result), result.stages);
+  }
+  row.peakBytes = peakMemory();
+  std::stable_sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const auto& median = runs[runs.size() / 2];
+  for (const auto& stage : median.second.seconds())
+    if (stage.first != kFitStage) row.stages.push_back(stage);
+  for (const auto& [name, seconds] : row.stages) row.seconds += seconds;
+  row.spread = row.seconds > 0.0 ? 0.5 * (runs.back().first - runs.front().first) / row.seconds : 0.0;
+  row.firstSeconds = std::max(first - row.seconds, 0.0);
+  return result;
 }
 
 // The candidates, the truth first: sorted, at the most passes.
@@ -107,27 +127,23 @@ std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vect
 }
 
 StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base,
-                      const std::function<void(std::size_t done, std::size_t all)>& begins) {
+                      int repeats, const std::function<void(std::size_t done, std::size_t all)>& begins) {
   Journal& journal = compositor.journal();
   StudyOutcome outcome;
   outcome.rows.resize(candidates.size());
   outcome.pictures.resize(candidates.size());
-  warmUp(compositor, base);
   Image<glm::vec4> truth;
   std::unique_ptr<FlipReference> flip;
+  std::string device = "CPU";
   const std::vector<std::size_t> order = orderOf(candidates);
   for (std::size_t done = 0; done < order.size(); ++done) {
     if (begins) begins(done, order.size());
     const StudyCandidate& candidate = candidates[order[done]];
     StudyRow& row = outcome.rows[order[done]];
     compositor.light(candidate.request);  // which all rows of as many passes share: it is no cost of a method
-    const Result result = compositor.run(candidate.request);
-    for (const auto& [name, seconds] : result.stages.seconds()) {
-      if (name == kFitStage) continue;  // one for a sequence, by --weight-from
-      row.stages.emplace_back(name, seconds);
-      row.seconds += seconds;
-    }
+    const Result result = timedRun(compositor, candidate.request, repeats, row);
     describeRow(row, candidate, result);
+    if (result.device != "CPU") device = result.device;
     if (done == 0) {
       truth = result.picture.rgba;
       flip = std::make_unique<FlipReference>(truth);
@@ -140,6 +156,9 @@ StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>&
                              row.error.rmse, row.seconds));
   }
   markFront(outcome.rows);
+  const auto cores = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  outcome.machine =
+      fmt::format("{} on {} threads; medians of {} runs after one that is not counted", device, cores, repeats);
   return outcome;
 }
 

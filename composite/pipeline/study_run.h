@@ -26,11 +26,13 @@ std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vect
 struct StudyOutcome {
   std::vector<StudyRow> rows;              // in the order of the candidates
   std::vector<Image<glm::vec3>> pictures;  // of each
+  std::string machine;                     // the device and the threads that rows were timed on, and how
 };
 // Errors are against the sorted candidate of most passes. The picture of each is that of Compositor::run(): where its
 // weight is fitted, to what it draws itself. Its seconds are without the fit.
-//   begins  is told before each candidate how many are done, of how many; may be null
+//   repeats  timed runs of each after one that is not counted, >= 1
+//   begins   is told before each candidate how many are done, of how many; may be null
 StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base,
-                      const std::function<void(std::size_t done, std::size_t all)>& begins = nullptr);
+                      int repeats, const std::function<void(std::size_t done, std::size_t all)>& begins = nullptr);
 
 }  // namespace pellucid

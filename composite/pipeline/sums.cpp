@@ -47,7 +47,7 @@ OitPlanes foldedSums(const PaintContext& context, const PassSettings& sample) {
   const GBuffer& gbuffer = *context.picture.gbuffer;
   PassSettings part = fullResolutionPart(context.plan, sample);
   part.fog = nullptr;  // it enters the sums as the device has it do, not as runs
-  OitPlanes planes = emptySums(context.plan, sample, gbuffer.display, gbuffer.data);
+  OitPlanes planes = emptySums(context.plan, sample, gbuffer.display, areaOf(sample, gbuffer.data));
   PublishedClamps clamps;
   TransparentPass* pass = context.sources.triangles();
   context.sources.each({part, context.picture, VolumeRule::midDepth}, [&](const FragmentLists& lists) {

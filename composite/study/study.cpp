@@ -19,17 +19,21 @@ double relativeSquareError(const Image<glm::vec4>& picture, const Image<glm::vec
   return count > 0 ? sum / count : 0.0;
 }
 
+bool clearlyFaster(const StudyRow& a, const StudyRow& b) {
+  return a.seconds * (1.0 + a.spread) < b.seconds * (1.0 - b.spread);
+}
+
 void markFront(std::vector<StudyRow>& rows) {
   for (StudyRow& row : rows)
     row.front = std::none_of(rows.begin(), rows.end(), [&](const StudyRow& other) {
-      return other.seconds <= row.seconds && other.error.rmse <= row.error.rmse &&
-             (other.seconds < row.seconds || other.error.rmse < row.error.rmse);
+      if (other.error.rmse < row.error.rmse) return !clearlyFaster(row, other);
+      return other.error.rmse == row.error.rmse && clearlyFaster(other, row);
     });
 }
 
 std::vector<std::string> studyHead() {
-  return {"method", "precision", "samples", "mean",    "rmse",   "p99",  "max",
-          "relMSE", "FLIP",      "seconds", "bits/px", "passes", "front"};
+  return {"method", "precision", "samples", "mean",  "rmse", "p99",     "max",    "relMSE",
+          "FLIP",   "seconds",   "spread",  "first", "MiB",  "bits/px", "passes", "front"};
 }
 
 std::vector<std::string> studyCells(const StudyRow& row) {
@@ -43,6 +47,9 @@ std::vector<std::string> studyCells(const StudyRow& row) {
           fmt::format("{:.3g}", row.relativeSquare),
           fmt::format("{:.3g}", row.flip),
           fmt::format("{:.3f}", row.seconds),
+          fmt::format("{:.1f}%", 100.0 * row.spread),
+          fmt::format("{:.3f}", row.firstSeconds),
+          row.peakBytes ? std::to_string(row.peakBytes >> 20) : "-",
           row.bits ? std::to_string(row.bits) : "lists",
           std::to_string(row.passes),
           row.front ? "*" : ""};
@@ -95,14 +102,16 @@ std::string studyText(const std::vector<StudyRow>& rows) {
 
 std::string studyCsv(const std::vector<StudyRow>& rows) {
   std::string text =
-      "method,precision,samples,mean,rmse,p99,max,relative_mse,flip,seconds,bits_per_pixel,passes,pareto_front";
+      "method,precision,samples,mean,rmse,p99,max,relative_mse,flip,seconds,spread,first_seconds,peak_bytes,bits_per_"
+      "pixel,passes,pareto_front";
   const std::vector<std::string> stages = stageNames(rows);
   for (const std::string& stage : stages) text += ",seconds: " + stage;
   text += "\n";
   for (const StudyRow& row : rows) {
-    text += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6f},{},{},{}", row.method, row.precision,
-                        row.samples, row.error.mean, row.error.rmse, row.error.p99, row.error.maximum,
-                        row.relativeSquare, row.flip, row.seconds, row.bits, row.passes, row.front ? 1 : 0);
+    text += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6f},{:.4f},{:.6f},{},{},{},{}",
+                        row.method, row.precision, row.samples, row.error.mean, row.error.rmse, row.error.p99,
+                        row.error.maximum, row.relativeSquare, row.flip, row.seconds, row.spread, row.firstSeconds,
+                        row.peakBytes, row.bits, row.passes, row.front ? 1 : 0);
     for (const std::string& wanted : stages) {
       text += ",";
       for (const auto& [name, seconds] : row.stages)

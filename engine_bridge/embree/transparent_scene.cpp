@@ -15,6 +15,9 @@ struct TransparentScene::Query {
 
 namespace {
 
+// Triangles whose corners are kept as rays meet them, 72 bytes each; those of larger scenes are placed at every test.
+constexpr std::size_t kMostPlaced = std::size_t{1} << 20;
+
 // Of the point that `hit` weighs, along the ray, in lengths of its direction.
 double distanceAlong(const Ray& ray, const Corners& corners, const TriangleHit& hit) {
   const glm::dvec3 point = hit.weight[0] * corners.p[0] + hit.weight[1] * corners.p[1] + hit.weight[2] * corners.p[2];
@@ -23,12 +26,16 @@ double distanceAlong(const Ray& ray, const Corners& corners, const TriangleHit& 
 
 }  // namespace
 
+Corners TransparentScene::cornersIn(const Part& part, std::size_t triangle) {
+  if (!part.corners.empty()) return part.corners[triangle];
+  const TransparentScene& owner = *part.owner;
+  return cornersOf(owner.primitiveOf(part.instance), owner.placed_[part.instance].viewFromObject, triangle);
+}
+
 // Wider than the triangle by far more than the rounding of Embree's own arithmetic, which is in float.
 void TransparentScene::boundsOf(const RTCBoundsFunctionArguments* arguments) {
   const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
-  const TransparentScene& owner = *part.owner;
-  const Corners corners =
-      cornersOf(owner.primitiveOf(part.instance), owner.placed_[part.instance].viewFromObject, arguments->primID);
+  const Corners corners = cornersIn(part, arguments->primID);
   const glm::dvec3 low = glm::min(corners.p[0], glm::min(corners.p[1], corners.p[2]));
   const glm::dvec3 high = glm::max(corners.p[0], glm::max(corners.p[1], corners.p[2]));
   const glm::dvec3 reach = glm::max(glm::abs(low), glm::abs(high));
@@ -48,8 +55,7 @@ void TransparentScene::test(const RTCIntersectFunctionNArguments* arguments) {
   const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
   const TransparentScene& owner = *part.owner;
   auto* query = reinterpret_cast<Query*>(arguments->context);
-  const Corners corners =
-      cornersOf(owner.primitiveOf(part.instance), owner.placed_[part.instance].viewFromObject, arguments->primID);
+  const Corners corners = cornersIn(part, arguments->primID);
   std::optional<TriangleHit> hit = intersectHalfOpen(*query->ray, corners, query->any ? false : owner.orthographic_);
   if (hit && query->any) {
     hit->z = distanceAlong(*query->ray, corners, *hit);
@@ -70,7 +76,12 @@ TransparentScene::TransparentScene(const Scene& scene, const Camera& camera)
     if (material.transparent() && !primitive.points)
       parts_.push_back({this, static_cast<std::uint32_t>(i), !material.bothSides()});
   }
+  std::size_t triangles = 0;
+  for (const Part& part : parts_) triangles += primitiveOf(part.instance).indices.size() / 3;
   for (Part& part : parts_) {
+    const Primitive& primitive = primitiveOf(part.instance);
+    for (std::size_t i = 0; triangles <= kMostPlaced && i < primitive.indices.size() / 3; ++i)
+      part.corners.push_back(cornersOf(primitive, placed_[part.instance].viewFromObject, i));
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitiveOf(part.instance).indices.size() / 3));
     rtcSetGeometryUserData(geometry, &part);

@@ -36,10 +36,12 @@ class TransparentScene {
     const TransparentScene* owner;
     std::uint32_t instance;
     bool singleSided;
+    std::vector<Corners> corners = {};  // of its triangles, in view space; empty where there are too many to keep
   };
   struct Query;
   static void boundsOf(const RTCBoundsFunctionArguments* arguments);
   static void test(const RTCIntersectFunctionNArguments* arguments);
+  static Corners cornersIn(const Part& part, std::size_t triangle);
   void run(Query& query, float reach) const;
   const Primitive& primitiveOf(std::uint32_t instance) const {
     return scene_.primitives[static_cast<std::size_t>(scene_.instances[instance].primitive)];

@@ -179,26 +179,36 @@ void requireListable(const Image<float>& count, const Window& window, std::size_
                                   countAt(count, window.x0, window.y0), limit));
 }
 
-Image<glm::vec4> solidOf(const Image<glm::vec4>& solid, const Window& window) {
-  Image<glm::vec4> part(window.width(), window.height());
-  for (int y = window.y0; y < window.y1; ++y)
-    std::copy(&solid.at(window.x0, y), &solid.at(window.x0, y) + window.width(), part.row(y - window.y0));
-  return part;
+Image<glm::vec4> drawnSolids(Renderer& renderer) {
+  Image<glm::vec4> solid;
+  if (!renderer.hasSolids()) return solid;
+  const Window& part = renderer.targets().part();
+  solid = Image<glm::vec4>(part.width(), part.height());
+  renderer.targets().readSolid(solid, 0, 0);
+  return solid;
+}
+
+Image<glm::vec4> solidOf(const Image<glm::vec4>& solid, const Window& part, const Window& window) {
+  Image<glm::vec4> own(window.width(), window.height(), glm::vec4(0, 0, 0, INFINITY));
+  if (solid.empty()) return own;
+  for (int y = window.y0; y < window.y1; ++y) {
+    const glm::vec4* row = solid.row(y - part.y0) + (window.x0 - part.x0);
+    std::copy(row, row + window.width(), own.row(y - window.y0));
+  }
+  return own;
 }
 
 void listFragments(Renderer& renderer, std::size_t bytes,
                    const std::function<void(FragmentLists&, const Window&)>& band) {
   Image<float> count;
   const std::vector<Window> windows = countedWindows(renderer, sizeof(Fragment), bytes, count);
-  Targets& targets = renderer.targets();
-  Image<glm::vec4> solid(targets.width(), targets.height(), glm::vec4(0, 0, 0, INFINITY));
-  if (renderer.hasSolids()) targets.readSolid(solid, 0, 0);
+  const Image<glm::vec4> solid = drawnSolids(renderer);
   BandWriter writer;
   FragmentLists lists;
   for (const Window& window : windows) {
     requireListable(count, window, sizeof(Fragment));
     writer.write(renderer, count, window, lists);
-    lists.solid = solidOf(solid, window);
+    lists.solid = solidOf(solid, renderer.targets().part(), window);
     band(lists, window);
   }
 }

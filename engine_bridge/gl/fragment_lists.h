@@ -22,8 +22,11 @@ std::vector<Window> countedWindows(Renderer& renderer, std::size_t recordBytes, 
 // Throws ResourceError for a pixel that stands alone and has more fragments than the device can list.
 void requireListable(const Image<float>& count, const Window& window, std::size_t recordBytes);
 
-// A window's part of the plane of solids.
-Image<glm::vec4> solidOf(const Image<glm::vec4>& solid, const Window& window);
+// Solids of the part of the targets that is drawn; empty where there are none. After Renderer::begin().
+Image<glm::vec4> drawnSolids(Renderer& renderer);
+// A window's part of a plane of them, or +inf for an empty one.
+//   part  that the plane is of
+Image<glm::vec4> solidOf(const Image<glm::vec4>& solid, const Window& part, const Window& window);
 
 // Fragments beside which drawing the geometry once more is a small part of the work.
 std::size_t lightFragments(std::size_t triangles, std::size_t draws);

@@ -17,12 +17,8 @@ using Block = std::function<void(LeanLists&, const Window&)>;
 
 class LeanWriter {
  public:
-  LeanWriter(Renderer& renderer, const Block& block) : renderer_(renderer), block_(block) {
-    Targets& targets = renderer.targets();
-    if (!renderer.hasSolids()) return;
-    solid_ = Image<glm::vec4>(targets.width(), targets.height());
-    targets.readSolid(solid_, 0, 0);
-  }
+  LeanWriter(Renderer& renderer, const Block& block)
+      : renderer_(renderer), block_(block), solid_(drawnSolids(renderer)) {}
 
   // Gives each pixel of the window this many places and delivers the lists if no pixel has more fragments than that.
   // Returns how many the deepest has. With 0 it only counts.
@@ -95,7 +91,7 @@ class LeanWriter {
       if (!mapped) throw ResourceError("GL: fragment lists cannot be read back");
       lists_.fragments = {mapped, places};
     }
-    if (!solid_.empty()) lists_.solid = solidOf(solid_, window);
+    if (!solid_.empty()) lists_.solid = solidOf(solid_, renderer_.targets().part(), window);
     block_(lists_, window);
     if (mapped && !glUnmapNamedBuffer(fragments_.name()))
       throw ResourceError("GL: fragment lists were lost while being read");
@@ -119,16 +115,18 @@ void listCounted(Renderer& renderer, std::size_t bytes, LeanWriter& writer) {
 
 // Blocks of whole tiles in rows. A tile too deep to give all its pixels as many places as the deepest needs is counted.
 void listGuessed(Renderer& renderer, std::size_t bytes, LeanWriter& writer) {
-  const int width = renderer.targets().width(), height = renderer.targets().height();
+  const Window& drawn = renderer.targets().part();
   constexpr std::size_t kCached = kListCache / sizeof(LeanFragment);
   const std::size_t most = std::clamp<std::size_t>(bytes, 1, largestStorageBlock()) / sizeof(LeanFragment);
   const std::size_t mostPlaces = std::min(most, 4 * kCached) / kTileArea;
   Image<float> count;
   std::size_t places = std::min(kFirstPlaces, mostPlaces);
-  for (int y = 0; y < height; y += kRasterTile)
-    for (int x = 0; x < width;) {
+  const auto tileOf = [](int place) { return place / kRasterTile * kRasterTile; };
+  for (int top = tileOf(drawn.y0); top < drawn.y1; top += kRasterTile)
+    for (int x = drawn.x0; x < drawn.x1;) {
       const auto tiles = std::max<int>(1, static_cast<int>(kCached / (std::max(places, kFewestPlaces) * kTileArea)));
-      const Window window{x, y, std::min(x + tiles * kRasterTile, width), std::min(y + kRasterTile, height)};
+      const Window window{x, std::max(top, drawn.y0), std::min(tileOf(x) + tiles * kRasterTile, drawn.x1),
+                          std::min(top + kRasterTile, drawn.y1)};
       const std::size_t deepest = writer.guess(window, places);
       if (deepest <= places) {
         places = std::min(std::max({deepest, places - places / 4, kFewestPlaces}), mostPlaces);
@@ -136,7 +134,7 @@ void listGuessed(Renderer& renderer, std::size_t bytes, LeanWriter& writer) {
       } else if (deepest <= mostPlaces) {
         places = deepest;
       } else {
-        if (count.empty()) count = Image<float>(width, height);
+        if (count.empty()) count = Image<float>(drawn.x1, drawn.y1);
         writer.copyCounts(window, count);
         for (const Window& part : bandsOf(count, window, std::max<std::size_t>(most, 1))) {
           requireListable(count, part, sizeof(LeanFragment));

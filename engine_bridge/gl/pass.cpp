@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <stdexcept>
 #include <type_traits>
 
 #include "engine_bridge/gl/fog_pass.h"
@@ -105,7 +106,7 @@ Image<float> TransparentPass::solidDepth(const PassSettings& settings) {
   centre.sample = {0.5, 0.5};
   const Window& data = impl_->gbuffer->data;
   Image<float> z(data.width(), data.height(), std::numeric_limits<float>::infinity());
-  for (const Window& part : impl_->renderer.superTiles())
+  for (const Window& part : impl_->renderer.superTiles(centre))
     impl_->renderer.solidDepth(part, centre, settings.budgetBytes, z);
   return z;
 }
@@ -119,15 +120,19 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
   gl::Renderer& renderer = impl_->renderer;
   const Window &display = impl_->gbuffer->display, &data = impl_->gbuffer->data;
   const bool published = settings.tier == SumsTier::published;
-  OitPlanes planes = published ? emptyPublishedPlanes(display, data) : emptyPlanes(display, data);
+  const Window& area = areaOf(settings, data);
+  if (area != data && (published || settings.fog)) throw std::logic_error("an area of sums that are of all pixels");
+  OitPlanes planes = published ? emptyPublishedPlanes(display, data) : emptyPlanes(display, area);
   planes.camera = impl_->camera;
   planes.info.weight = settings.weight;
   if (!published) planes.info.normalisation = settings.normalisation;
   impl_->statistics.clamps = {};
   std::size_t tiles = 0;
-  for (const Window& part : renderer.superTiles()) {
+  for (const Window& part : renderer.superTiles(settings)) {
     renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes);
     const std::vector<Window> scissors = renderer.tiles();
+    const Window drawn = renderer.drawnPart();
+    const int x = part.x0 + drawn.x0 - (area.x0 - data.x0), y = part.y0 + drawn.y0 - (area.y0 - data.y0);
     tiles += scissors.size();
     const LayerModel layers = renderer.layers();
     if (layers.scatters()) addScatterPlanes(planes);
@@ -140,12 +145,13 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
       targets.read(planes, part.x0, part.y0, impl_->statistics.clamps);
     } else {
       gl::PlaneTargets& targets = renderer.targets().planes();
+      targets.setPart(drawn);
       targets.begin(planesOf(layers));
       renderer.draw(gl::Output::sums, scissors);
       if (settings.fog) impl_->fog.draw(*settings.fog, renderer.fogFrame(part));
-      targets.read(planes, part.x0, part.y0);
+      targets.read(planes, x, y);
     }
-    if (renderer.hasSolids()) renderer.targets().readSolid(planes.solid, part.x0, part.y0);
+    if (renderer.hasSolids()) renderer.targets().readSolid(planes.solid, x, y);
   }
   if (renderer.hasSolids()) planes.info.solidHash = gl::solidHash(planes.solid);
   std::size_t fragments = 0;
@@ -159,7 +165,7 @@ RimPlanes TransparentPass::rims(const PassSettings& settings) {
   gl::Renderer& renderer = impl_->renderer;
   const Window& data = impl_->gbuffer->data;
   RimPlanes planes;
-  for (const Window& part : renderer.superTiles()) {
+  for (const Window& part : renderer.superTiles(settings)) {
     renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes);
     if (!renderer.occludes()) return planes;
     if (planes.empty()) planes = RimPlanes(data.width(), data.height());
@@ -190,7 +196,7 @@ void TransparentPass::Impl::list(const PassSettings& settings, const std::functi
   const auto start = std::chrono::steady_clock::now();
   std::size_t bands = 0, fragments = 0;
   statistics.clamps = {};
-  for (const Window& part : renderer.superTiles()) {
+  for (const Window& part : renderer.superTiles(settings)) {
     // Half for the geometry, half for the fragments: a quarter on the device, a quarter here.
     renderer.begin(part, settings, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes / 2);
     const auto deliver = [&](Lists& lists, const Window& band) {

@@ -10,21 +10,22 @@
 namespace pellucid::gl {
 namespace {
 
-void readInto(const Texture& texture, int components, int width, int height, float* first, int rowLength) {
-  const std::size_t texels =
-      static_cast<std::size_t>(height - 1) * static_cast<std::size_t>(rowLength) + static_cast<std::size_t>(width);
+void readInto(const Texture& texture, int components, const Window& part, float* first, int rowLength) {
+  const std::size_t texels = static_cast<std::size_t>(part.height() - 1) * static_cast<std::size_t>(rowLength) +
+                             static_cast<std::size_t>(part.width());
   const std::size_t bytes = texels * static_cast<std::size_t>(components) * sizeof(float);
   constexpr std::size_t most = std::numeric_limits<GLsizei>::max();
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   glPixelStorei(GL_PACK_ROW_LENGTH, rowLength);
-  glGetTextureImage(texture.name(), 0, channelsOf(components), GL_FLOAT, static_cast<GLsizei>(std::min(bytes, most)),
-                    first);
+  glGetTextureSubImage(texture.name(), 0, part.x0, part.y0, 0, part.width(), part.height(), 1, channelsOf(components),
+                       GL_FLOAT, static_cast<GLsizei>(std::min(bytes, most)), first);
   glPixelStorei(GL_PACK_ROW_LENGTH, 0);
 }
 
 }  // namespace
 
-PlaneTargets::PlaneTargets(int width, int height) : width_(width), height_(height), frame_(Framebuffer::make()) {}
+PlaneTargets::PlaneTargets(int width, int height)
+    : width_(width), height_(height), part_{0, 0, width, height}, frame_(Framebuffer::make()) {}
 
 const Texture& PlaneTargets::textureOf(const PlaneSpec& plane) {
   for (const Target& target : targets_)
@@ -65,7 +66,8 @@ void PlaneTargets::begin(const std::vector<PlaneSpec>& planes) {
   checkGl("making the targets of the transparent pass");
   if (glCheckNamedFramebufferStatus(frame, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw ResourceError("GL: the device cannot draw to the planes of this --precision at once");
-  glDisable(GL_SCISSOR_TEST);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(part_.x0, part_.y0, part_.width(), part_.height());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
   glEnable(GL_BLEND);
   for (const PlaneSpec& plane : planes_) {
@@ -91,19 +93,20 @@ void PlaneTargets::readPlane(const PlaneSpec& plane, const ValuesOf& valuesOf, i
       static_cast<std::size_t>(y) * static_cast<std::size_t>(rowLength) + static_cast<std::size_t>(x);
   const PlaneValues whole = valuesOf(plane.sum, 0);
   if (whole.stride == static_cast<std::size_t>(components)) {
-    readInto(textureOf(plane.sum), components, width_, height_, whole.first + corner * whole.stride, rowLength);
+    readInto(textureOf(plane.sum), components, part_, whole.first + corner * whole.stride, rowLength);
     return;
   }
-  std::vector<float> texels(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) *
+  std::vector<float> texels(static_cast<std::size_t>(part_.width()) * static_cast<std::size_t>(part_.height()) *
                             static_cast<std::size_t>(components));
-  readInto(textureOf(plane.sum), components, width_, height_, texels.data(), width_);
+  readInto(textureOf(plane.sum), components, part_, texels.data(), part_.width());
   for (int c = 0; c < components; ++c) {
     const PlaneValues values = valuesOf(plane.sum, c);
     const float* texel = texels.data() + c;
-    for (int row = 0; row < height_; ++row) {
+    for (int row = 0; row < part_.height(); ++row) {
       float* value =
           values.first + (corner + static_cast<std::size_t>(row) * static_cast<std::size_t>(rowLength)) * values.stride;
-      for (int column = 0; column < width_; ++column, texel += components, value += values.stride) *value = *texel;
+      for (int column = 0; column < part_.width(); ++column, texel += components, value += values.stride)
+        *value = *texel;
     }
   }
 }
@@ -124,13 +127,14 @@ void PlaneTargets::read(OitPlanes& planes, int x, int y) const {
 }
 
 void PlaneTargets::readGrey(OitPlanes& planes, int x, int y) const {
-  Image<glm::vec4> radiance(width_, height_), opacity(width_, height_);
-  Image<glm::vec2> depth(width_, height_);
-  readInto(textureOf(PlaneSum::radiance), 4, width_, height_, &radiance.data()->x, width_);
-  readInto(textureOf(PlaneSum::opacity), 4, width_, height_, &opacity.data()->x, width_);
-  readInto(textureOf(PlaneSum::depth), 2, width_, height_, &depth.data()->x, width_);
-  for (int row = 0; row < height_; ++row)
-    for (int column = 0; column < width_; ++column) {
+  const int width = part_.width(), height = part_.height();
+  Image<glm::vec4> radiance(width, height), opacity(width, height);
+  Image<glm::vec2> depth(width, height);
+  readInto(textureOf(PlaneSum::radiance), 4, part_, &radiance.data()->x, width);
+  readInto(textureOf(PlaneSum::opacity), 4, part_, &opacity.data()->x, width);
+  readInto(textureOf(PlaneSum::depth), 2, part_, &depth.data()->x, width);
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
       shading::GreyTargets grey;
       grey.radiance = radiance.at(column, row);
       grey.opacity = opacity.at(column, row);

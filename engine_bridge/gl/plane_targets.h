@@ -15,11 +15,14 @@ class PlaneTargets {
   int width() const { return width_; }
   int height() const { return height_; }
 
+  // From now on planes are cleared and read in this part alone, in pixels of the targets.
+  void setPart(const Window& part) { part_ = part; }
+
   // Binds a framebuffer of these planes, clears it and sets blending, so that the next draws add up. Planes that are
   // needed for the first time are made. Throws ResourceError when the device has no room or cannot draw to them at
   // once.
   void begin(const std::vector<PlaneSpec>& planes);
-  // Those of begin(), into planes in memory, the targets' top left pixel at (x, y). Sums that are packed for scenes
+  // Those of begin(), into planes in memory, the part's top left pixel at (x, y). Sums that are packed for scenes
   // without coloured transmission are unpacked.
   void read(OitPlanes& planes, int x, int y) const;
   void read(RimPlanes& planes, int x, int y) const;
@@ -41,6 +44,7 @@ class PlaneTargets {
   void readPlane(const PlaneSpec& plane, const ValuesOf& valuesOf, int x, int y, int rowLength) const;
 
   int width_, height_;
+  Window part_;
   std::vector<Target> targets_;
   std::vector<PlaneSpec> planes_;  // of begin()
   Framebuffer frame_;

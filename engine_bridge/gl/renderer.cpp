@@ -116,13 +116,35 @@ void Renderer::classify() {
   }
 }
 
-std::vector<Window> Renderer::superTiles() const {
+Window Renderer::areaOf(const PassSettings& settings) const {
+  const Window &data = gbuffer_->data, &area = pellucid::areaOf(settings, data);
+  return {area.x0 - data.x0, area.y0 - data.y0, area.x1 - data.x0, area.y1 - data.y0};
+}
+
+namespace {
+
+Window common(const Window& a, const Window& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+}  // namespace
+
+std::vector<Window> Renderer::superTiles(const PassSettings& settings) const {
   std::vector<Window> parts;
+  const Window area = areaOf(settings);
   const int width = gbuffer_->data.width(), height = gbuffer_->data.height();
   for (int y = 0; y < height; y += kSuperTile)
-    for (int x = 0; x < width; x += kSuperTile)
-      parts.push_back({x, y, std::min(x + kSuperTile, width), std::min(y + kSuperTile, height)});
+    for (int x = 0; x < width; x += kSuperTile) {
+      const Window part{x, y, std::min(x + kSuperTile, width), std::min(y + kSuperTile, height)};
+      const Window met = common(part, area);
+      if (met.width() > 0 && met.height() > 0) parts.push_back(part);
+    }
   return parts;
+}
+
+Window Renderer::drawnPart() const {
+  const Window met = common(areaOf(settings_), superTile_);
+  return {met.x0 - superTile_.x0, met.y0 - superTile_.y0, met.x1 - superTile_.x0, met.y1 - superTile_.y0};
 }
 
 Renderer::Needs Renderer::needsOf(const PassSettings& settings) const {
@@ -222,12 +244,14 @@ void setDrawingState(const Window& superTile) {
 
 void Renderer::prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes) {
   settings_ = settings;
+  superTile_ = superTile;
   geometryBytes_ = geometryBytes;
   chooseFeatures(settings);
   describeSurfaces();
 
   if (!targets_ || targets_->width() != superTile.width() || targets_->height() != superTile.height())
     targets_.emplace(superTile.width(), superTile.height());
+  targets_->setPart(drawnPart());
   if (!(opaqueZ_ && opaqueZPart_ == superTile)) {
     opaqueZ_ = uploadPlane(gbuffer_->viewZ, superTile);
     opaqueZPart_ = superTile;
@@ -421,10 +445,13 @@ FogFrame Renderer::fogFrame(const Window& superTile) const {
 std::vector<Window> Renderer::tiles() const {
   const int width = targets_->width(), height = targets_->height();
   const int edge = settings_.tile > 0 ? settings_.tile : std::max(width, height);
+  const Window drawn = drawnPart();
   std::vector<Window> tiles;
   for (int y = 0; y < height; y += edge)
-    for (int x = 0; x < width; x += edge)
-      tiles.push_back({x, y, std::min(x + edge, width), std::min(y + edge, height)});
+    for (int x = 0; x < width; x += edge) {
+      const Window tile = common({x, y, std::min(x + edge, width), std::min(y + edge, height)}, drawn);
+      if (tile.width() > 0 && tile.height() > 0) tiles.push_back(tile);
+    }
   return tiles;
 }
 

@@ -30,7 +30,8 @@ class Renderer {
   void over(const GBuffer& gbuffer, const Camera& camera);
 
   // Parts of the data window that are drawn at once, in pixels of its top left corner, row by row.
-  std::vector<Window> superTiles() const;
+  //   settings  what their area does not meet is left out
+  std::vector<Window> superTiles(const PassSettings& settings) const;
 
   // Camera, opaque depth and targets for one of them, and its solid plane.
   void begin(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);
@@ -57,8 +58,10 @@ class Renderer {
   bool occludes() const { return features_.occludes; }
   // What a full-screen pass over the sums of a super-tile needs to know, after begin().
   FogFrame fogFrame(const Window& superTile) const;
-  // Scissor tiles of the super-tile, as PassSettings::tile wants them.
+  // Scissor tiles of the super-tile, as PassSettings::tile wants them; of PassSettings::area alone.
   std::vector<Window> tiles() const;
+  // The part of the super-tile that is drawn, in its pixels.
+  Window drawnPart() const;
   bool picksTiles() const { return settings_.tile == 0; }
   const GeometryStream& geometry() const { return stream_; }
   // Of shadow rays, since the last call.
@@ -117,8 +120,10 @@ class Renderer {
   std::optional<ShadowTextures> shadows_;
   ShadowRayTable rayTable_;
   ShadowRayTable::Counts rayCounts_;
-  bool tracing_ = false;  // only what shadow rays are traced for is drawn
+  bool tracing_ = false;                              // only what shadow rays are traced for is drawn
+  Window areaOf(const PassSettings& settings) const;  // in pixels of the data window
   Window opaqueZPart_, occludersPart_;
+  Window superTile_;
   std::shared_ptr<const OccluderPlanes> uploadedOccluders_;
 };
 

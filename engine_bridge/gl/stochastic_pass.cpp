@@ -240,7 +240,7 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
   plain.scatter.k0 = 0.0f;
   if (samples.stratified) self.uploadRanks(samples.samples);
   const auto count = static_cast<std::uint32_t>((samples.samples - samples.first + samples.step - 1) / samples.step);
-  for (const Window& part : self.renderer.superTiles()) {
+  for (const Window& part : self.renderer.superTiles(settings)) {
     self.renderer.begin(part, plain, settings.chunkBytes ? settings.chunkBytes : settings.budgetBytes);
     if (!self.targets || self.targets->width != part.width() || self.targets->height != part.height())
       self.targets = std::make_unique<PixelTargets>(part.width(), part.height());

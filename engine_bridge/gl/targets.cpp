@@ -15,15 +15,16 @@ void requireComplete(const Framebuffer& framebuffer) {
     throw std::logic_error("a framebuffer of the transparent pass is incomplete");
 }
 
-void readInto(const Texture& texture, GLenum format, int width, int height, void* first, int rowLength) {
+void readInto(const Texture& texture, GLenum format, const Window& part, void* first, int rowLength) {
   const std::size_t texel = (format == GL_RGBA ? 4 : format == GL_RG ? 2 : 1) * sizeof(float);
-  const std::size_t bytes =
-      (static_cast<std::size_t>(height - 1) * static_cast<std::size_t>(rowLength) + static_cast<std::size_t>(width)) *
-      texel;
+  const std::size_t bytes = (static_cast<std::size_t>(part.height() - 1) * static_cast<std::size_t>(rowLength) +
+                             static_cast<std::size_t>(part.width())) *
+                            texel;
   constexpr std::size_t most = std::numeric_limits<GLsizei>::max();
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   glPixelStorei(GL_PACK_ROW_LENGTH, rowLength);
-  glGetTextureImage(texture.name(), 0, format, GL_FLOAT, static_cast<GLsizei>(std::min(bytes, most)), first);
+  glGetTextureSubImage(texture.name(), 0, part.x0, part.y0, 0, part.width(), part.height(), 1, format, GL_FLOAT,
+                       static_cast<GLsizei>(std::min(bytes, most)), first);
   glPixelStorei(GL_PACK_ROW_LENGTH, 0);
 }
 
@@ -35,6 +36,12 @@ Texture Targets::add(GLenum format) const {
   return texture;
 }
 
+// What clearing obeys.
+void Targets::scissorPart() const {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(part_.x0, part_.y0, part_.width(), part_.height());
+}
+
 void Targets::beginCount() {
   if (!count_) {
     count_ = add(GL_R32F);
@@ -43,7 +50,7 @@ void Targets::beginCount() {
     checkGl("making the fragment count");
     requireComplete(countFrame_);
   }
-  glDisable(GL_SCISSOR_TEST);
+  scissorPart();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, countFrame_.name());
   const float zero[4] = {0, 0, 0, 0};
   glClearNamedFramebufferfv(countFrame_.name(), GL_COLOR, 0, zero);
@@ -63,7 +70,7 @@ void Targets::beginSolidDepth() {
     requireComplete(solidFrame_);
   }
   const float none[4] = {0, 0, 0, kInfinity};
-  glDisable(GL_SCISSOR_TEST);
+  scissorPart();
   glClearNamedFramebufferfv(solidFrame_.name(), GL_COLOR, 0, none);
   const float infinitelyFar = 0;  // reversed depth
   glDepthMask(GL_TRUE);
@@ -101,12 +108,12 @@ void Targets::bindSolid() const {
 }
 
 void Targets::readSolid(Image<glm::vec4>& solid, int x, int y) const {
-  readInto(solid_, GL_RGBA, width_, height_, &solid.at(x, y), solid.width());
+  readInto(solid_, GL_RGBA, part_, &solid.at(x, y), solid.width());
   checkGl("reading the solid plane back");
 }
 
 void Targets::readSolidDepth(Image<float>& z, int x, int y) const {
-  readInto(solidDepth_, GL_DEPTH_COMPONENT, width_, height_, &z.at(x, y), z.width());
+  readInto(solidDepth_, GL_DEPTH_COMPONENT, {0, 0, width_, height_}, &z.at(x, y), z.width());
   checkGl("reading the depth of solids back");
   for (int row = y; row < y + height_; ++row)
     for (int column = x; column < x + width_; ++column) {
@@ -117,7 +124,7 @@ void Targets::readSolidDepth(Image<float>& z, int x, int y) const {
 
 Image<float> Targets::readCount() const {
   Image<float> count(width_, height_);
-  readInto(count_, GL_RED, width_, height_, count.data(), width_);
+  readInto(count_, GL_RED, part_, &count.at(part_.x0, part_.y0), width_);
   checkGl("reading the fragment count back");
   return count;
 }

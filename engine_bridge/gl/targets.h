@@ -12,10 +12,14 @@ constexpr int kSuperTile = 8192;
 
 class Targets {
  public:
-  Targets(int width, int height) : width_(width), height_(height), planes_(width, height) {}
+  Targets(int width, int height) : width_(width), height_(height), part_{0, 0, width, height}, planes_(width, height) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
+
+  // From now on counts and solids are cleared and read in this part alone, in pixels of the targets.
+  void setPart(const Window& part) { part_ = part; }
+  const Window& part() const { return part_; }
 
   PlaneTargets& planes() { return planes_; }
   // Binds and clears its framebuffer and sets blending, so that the next draws add up.
@@ -26,15 +30,17 @@ class Targets {
   void beginNothing();  // draws leave no pixels, only buffers
 
   void bindSolid() const;  // to texture unit 6; after beginSolidDepth()
-  // Into planes in memory, the targets' top left pixel at (x, y).
+  // Into planes in memory, the part's top left pixel at (x, y).
   void readSolid(Image<glm::vec4>& solid, int x, int y) const;
   // After beginSolidDepth() and its draws: planar metres, +inf for none.
   void readSolidDepth(Image<float>& z, int x, int y) const;
-  Image<float> readCount() const;
+  Image<float> readCount() const;  // of all pixels, 0 beyond the part
 
  private:
   Texture add(GLenum format) const;
+  void scissorPart() const;
   int width_, height_;
+  Window part_;
   PlaneTargets planes_;
   Texture solid_, solidDepth_, count_;
   Framebuffer solidFrame_, countFrame_, emptyFrame_;

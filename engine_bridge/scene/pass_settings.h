@@ -58,6 +58,9 @@ struct ViewSettings {
   // mean is taken. Rims of masks and texture footprints are that wide, so that the mean filters by the pixel, once.
   float footprint = 1.0f;
   int probeCell = 1;  // above 1, lists hold one pixel of every cell of this edge alone: shaders/shared/probe.glsl
+  // The part of the data window that is drawn and listed, display coordinates; all of it where it is empty. What lies
+  // beyond stays as nothing has left it; inside, no bit depends on it.
+  Window area = {};
 };
 
 // What a fragment's colour, coverage and scattering are computed from.
@@ -93,5 +96,10 @@ struct SumsSettings {
 };
 
 struct PassSettings : SumsSettings, ViewSettings, ShadingSettings, ResidencySettings {};
+
+// What a pass draws of a data window.
+inline const Window& areaOf(const ViewSettings& settings, const Window& data) {
+  return settings.area.width() > 0 && settings.area.height() > 0 ? settings.area : data;
+}
 
 }  // namespace pellucid

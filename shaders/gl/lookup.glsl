@@ -67,3 +67,4 @@ float backdropDepth(ivec2 pixel) {
 float spreadAt(ivec2 pixel) { return pathSumsAt(inPicture(pixel)).w; }
 
 #include "shared/gather.glsl"
+#include "shared/path_lookup.glsl"

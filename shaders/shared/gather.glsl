@@ -1,7 +1,6 @@
 #pragma once
-// Looking the backdrop up along a pixel's path: refracted to another place, spread by diffusion. Whoever includes this
-// says where texels come from, by these functions of pixels or texels, whose coordinates are clamped to the picture by
-// the callee:
+// What a place of the backdrop shows, sharp or spread by diffusion. Whoever includes this says where texels come from,
+// by these functions of pixels or texels, whose coordinates are clamped to the picture by the callee:
 //   vec4 backdropColour(ivec2 pixel)            scene-linear, premultiplied, and alpha; perhaps not finite
 //   float backdropDepth(ivec2 pixel)            planar metres, +inf for nothing
 //   float spreadAt(ivec2 pixel)                 D^2, pixels^2
@@ -231,48 +230,4 @@ PLD_FN Gathered gatherSpread(LookupChoice settings, vec2 centre, float variance,
   int level = settings.exact != 0 ? 0 : min(spreadLevel(spread), settings.levels);
   if (level == 0) return gatherGaussian(centre, spread, layerZ);
   return gatherPyramid(level, centre, spread, layerZ);
-}
-
-// What a path from this pixel's centre shows of the backdrop.
-PLD_FN vec4 lookupAlong(LookupChoice settings, Path path, ivec2 pixel) {
-  precise vec2 own = vec2(float(pixel.x) + 0.5f, float(pixel.y) + 0.5f);
-  vec2 place = own;
-  Gathered tap = nothingGathered();
-  if (path.refracts) {
-    precise vec2 bent = own + path.offset;
-    place = bent;
-    tap = gatherBilinear(place, path.refractionZ);
-  }
-  vec4 undiffused = vec4(0.0f);
-  if (tap.weight > 0.0f) {
-    precise vec4 mean = tap.colour / tap.weight;
-    undiffused = mean;
-  } else {
-    place = own;
-    undiffused = backdropColour(pixel);
-  }
-  if (path.variance <= 0.0f) return undiffused;
-  Gathered spread = gatherSpread(settings, place, path.variance, path.diffuseZ);
-  if (spread.weight <= 0.0f) return undiffused;
-  precise vec4 diffused = spread.colour / spread.weight;
-  float share = kernelShare(path.variance);
-  if (share >= 1.0f || !isFiniteColour(undiffused)) return diffused;
-  precise vec4 both = undiffused + share * (diffused - undiffused);
-  return both;
-}
-
-// Each channel along its own path.
-//   dispersion  offset of red minus the path's, of blue minus it
-PLD_FN vec4 lookupAt(LookupChoice settings, Path path, vec4 dispersion, ivec2 pixel) {
-  vec4 seen = lookupAlong(settings, path, pixel);
-  if (!path.refracts || (dispersion.x == 0.0f && dispersion.y == 0.0f && dispersion.z == 0.0f && dispersion.w == 0.0f))
-    return seen;
-  Path red = path, blue = path;
-  precise vec2 redOffset = path.offset + vec2(dispersion.x, dispersion.y);
-  precise vec2 blueOffset = path.offset + vec2(dispersion.z, dispersion.w);
-  red.offset = redOffset;
-  blue.offset = blueOffset;
-  seen.r = lookupAlong(settings, red, pixel).r;
-  seen.b = lookupAlong(settings, blue, pixel).b;
-  return seen;
 }

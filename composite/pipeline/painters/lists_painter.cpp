@@ -1,6 +1,7 @@
 #include "composite/pipeline/painters/lists_painter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "composite/fold.h"
@@ -21,6 +22,12 @@ void Mixer::mixLean(const LeanLists& lists, const Window& data, Veil& veil) {
 
 namespace {
 
+bool anySolid(const FragmentLists& lists) {
+  for (std::size_t i = 0; i < lists.solid.size(); ++i)
+    if (std::isfinite(lists.solid[i].a)) return true;
+  return false;
+}
+
 class ListsPainter : public Painter {
  public:
   ListsPainter(const PaintContext& context, std::unique_ptr<Mixer> mixer)
@@ -37,10 +44,11 @@ class ListsPainter : public Painter {
   Veil painted(const PassSettings& sample, int pass) {
     const GBuffer& gbuffer = *context_.picture.gbuffer;
     const Plan& plan = context_.plan;
-    Veil veil(gbuffer.data.width(), gbuffer.data.height());
+    area_ = areaOf(sample, gbuffer.data);
+    Veil veil(area_, gbuffer.data);
     if (leanWillDo(sample)) {
-      context_.sources.triangles()->leanFragments(
-          sample, [&](const LeanLists& lists) { mixer_->mixLean(lists, gbuffer.data, veil); });
+      context_.sources.triangles()->leanFragments(sample,
+                                                  [&](const LeanLists& lists) { mixer_->mixLean(lists, area_, veil); });
       context_.counts.add(context_.sources.triangles()->statistics());
       return veil;
     }
@@ -52,7 +60,8 @@ class ListsPainter : public Painter {
     PassStatistics lowStatistics;
     if (plan.lowResolution > 1) low_.emplace(lowLayersOf(context_, sample, pass, *mixer_, lowStatistics));
     scatters_ = context_.sources.mayScatter(fullResolutionPart(plan, sample)) || (low_ && low_->scatters());
-    planes_ = scatters_ ? emptyPlanes(gbuffer.display, gbuffer.data) : OitPlanes();
+    anyScatters_ = false;
+    preparePlanes();
     list(sample, pass, veil);
     if (TransparentPass* triangles = context_.sources.triangles()) {
       PassStatistics statistics = triangles->statistics();
@@ -61,8 +70,22 @@ class ListsPainter : public Painter {
       context_.counts.add(statistics);
     }
     mixer_->endPass(planes_);
-    if (planes_.scatters()) showBackground(veil);
+    if (planes_.scatters() && (!planesStay() || anyScatters_)) showBackground(veil);
     return veil;
+  }
+
+  // Whether what scatters is summed so that no order shows: each window replaces what the pass before has left there.
+  bool sumsExactly() const { return mixer_->exactScatter() || context_.plan.isExact(); }
+  bool planesStay() const { return sumsExactly() && !context_.plan.heldOut; }
+
+  void preparePlanes() {
+    const GBuffer& gbuffer = *context_.picture.gbuffer;
+    if (!scatters_)
+      planes_ = OitPlanes();
+    else if (!planesStay())
+      planes_ = emptyPlanes(gbuffer.display, area_);
+    else if (planes_.data != area_ || !planes_.scatters())
+      planes_ = emptyScatterPlanes(gbuffer.display, area_);
   }
 
   void list(const PassSettings& sample, int pass, Veil& veil) {
@@ -86,11 +109,13 @@ class ListsPainter : public Painter {
 
   void window(const PassSettings& sample, int pass, const FragmentLists& given, Veil& veil) {
     // Every method shows the same background, which the pixel's scattering layers alone decide.
-    if (scatters_ && (mixer_->exactScatter() || context_.plan.isExact()))
+    if (scatters_ && planesStay())
+      anyScatters_ = foldExactScattering(given, planes_) || anyScatters_;
+    else if (scatters_ && sumsExactly())
       foldExact(given, sample.weight, sample.normalisation, planes_);
     else if (scatters_)
       foldScattering(given, planes_);
-    if (!scatters_ && !context_.plan.isExact()) {
+    if (!context_.plan.isExact() && !(scatters_ && (given.disperses() || anySolid(given)))) {
       mix(sample, pass, given, veil);
       return;
     }
@@ -102,10 +127,10 @@ class ListsPainter : public Painter {
   }
 
   void mix(const PassSettings& sample, int pass, const FragmentLists& lists, Veil& veil) {
-    const GBuffer& gbuffer = *context_.picture.gbuffer;
     // Where a pass sees one of two surfaces, its background is a part of the pixel's colour that no mixer knows.
-    const Image<glm::vec4>* background = context_.picture.passWeight ? nullptr : &gbuffer.beauty;
-    Mixed mixed{sample, pass, gbuffer.data, background, scatters_ ? &planes_ : nullptr, nullptr};
+    const bool ofPixels = !context_.picture.passWeight && area_ == context_.picture.gbuffer->data;
+    const Image<glm::vec4>* background = ofPixels ? &context_.picture.centres->beauty : nullptr;
+    Mixed mixed{sample, pass, area_, background, scatters_ ? &planes_ : nullptr, nullptr};
     if (!context_.plan.heldOut) {
       mixer_->mix(mixed, lists, veil);
       return;
@@ -119,8 +144,9 @@ class ListsPainter : public Painter {
   }
 
   void showBackground(Veil& veil) {
-    const Backdrop backdrop = backdropOf(*context_.picture.centres, planes_.solid);
-    const Lookups lookups(backdrop, planes_, context_.plan.lookup);
+    const GBuffer& picture = *context_.picture.centres;
+    const glm::ivec2 place(planes_.data.x0 - picture.data.x0, planes_.data.y0 - picture.data.y0);
+    const Lookups lookups(backdrops_.of(picture, planes_.solid, place), planes_, context_.plan.lookup, place);
     if (context_.plan.heldOut)
       showThroughHeldOut(lookups, lookedUp_, veil);
     else
@@ -130,8 +156,10 @@ class ListsPainter : public Painter {
   PaintContext context_;
   std::unique_ptr<Mixer> mixer_;
   // Of one pass.
-  bool scatters_ = false;
-  OitPlanes planes_;           // what scatters
+  Window area_;
+  bool scatters_ = false, anyScatters_ = false;  // may be, is
+  OitPlanes planes_;                             // what scatters
+  PassBackdrop backdrops_;
   Image<glm::vec3> lookedUp_;  // with a deep picture behind
   std::optional<LowResolutionFragments> low_;
 };

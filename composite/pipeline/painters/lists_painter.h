@@ -8,11 +8,12 @@ namespace pellucid {
 // What a mixer is told besides the lists.
 struct Mixed {
   const PassSettings& sample;
-  int pass;                                      // its number
-  const Window& data;                            // of the veil
-  const Image<glm::vec4>* background = nullptr;  // of `data`; null where a pixel shows several
-  const OitPlanes* scatter = nullptr;            // which pixels look elsewhere; null: none
-  const HeldOutRow* row = nullptr;               // the lists are the entries of a deep picture's row
+  int pass;            // its number
+  const Window& data;  // of the veil
+  // Of `data`; null where a pixel shows several, and where a part of the picture is painted.
+  const Image<glm::vec4>* background = nullptr;
+  const OitPlanes* scatter = nullptr;  // which pixels look elsewhere; null: none
+  const HeldOutRow* row = nullptr;     // the lists are the entries of a deep picture's row
 };
 
 class Mixer {

@@ -6,7 +6,7 @@ namespace {
 
 std::size_t accountsOf(const PaintContext& context) {
   if (context.plan.heldOut) return placesOf(*context.picture.deepOpaque);
-  return context.picture.gbuffer->beauty.size();
+  return context.picture.gbuffer->viewZ.size();
 }
 
 class WithinMixer : public Mixer {

@@ -1,0 +1,68 @@
+// The shared text of the lookup in C++, with the functions by which it reads the picture; the loops over taps that take
+// most of the time have a form of lanes with the same bits (wide_gather).
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "composite/gather.h"
+#include "composite/spread_pyramid.h"
+
+namespace pellucid::shading {
+
+// What the text reads.
+struct LookupSource {
+  BackdropView backdrop;
+  const OitPlanes* planes = nullptr;
+  ivec2 placeOfPlanes = ivec2(0);              // their first pixel, in the backdrop
+  Window diffusing = {};                       // pixels of the backdrop, all that diffuse among them
+  Image<float> spreadOfTaps = {};              // of these: D^2, -1 where the backdrop is not finite; kBeyond wider
+  std::vector<SpreadLevel> spreadLevels = {};  // [0] is level 1
+  static constexpr int kBeyond = 8;
+
+  int width() const { return backdrop.z->width(); }
+  int height() const { return backdrop.z->height(); }
+};
+
+// The text as it stands.
+struct GatherText : LookupSource {
+  template <class T>
+  static const T& clampedAt(const Image<T>& image, ivec2 place) {
+    return image.at(std::clamp(place.x, 0, image.width() - 1), std::clamp(place.y, 0, image.height() - 1));
+  }
+  const vec4& backdropColour(ivec2 pixel) const { return clampedAt(*backdrop.colour, pixel); }
+  float backdropDepth(ivec2 pixel) const { return clampedAt(*backdrop.z, pixel); }
+  float spreadAt(ivec2 pixel) const {
+    const int x = std::clamp(pixel.x, 0, width() - 1) - placeOfPlanes.x,
+              y = std::clamp(pixel.y, 0, height() - 1) - placeOfPlanes.y;
+    const bool inside = x >= 0 && y >= 0 && x < planes->refraction.width() && y < planes->refraction.height();
+    return inside ? planes->refraction.at(x, y).w : 0.0f;
+  }
+  const SpreadTexel& spreadTexel(int level, ivec2 texel) const {
+    return spreadLevels[static_cast<std::size_t>(level - 1)].clamped(texel);
+  }
+  const SpreadBody& spreadBody(int level, ivec2 texel) const { return spreadTexel(level, texel).body; }
+
+#define PLD_FN inline
+#define precise
+#include "shaders/shared/gather.glsl"
+#undef precise
+#undef PLD_FN
+};
+
+// The same with lanes.
+struct LookupText : GatherText {
+  LookupChoice choice = {};
+
+  // All must outlive this.
+  //   place  of the planes' first pixel, in pixels of the backdrop
+  LookupText(const BackdropView& seen, const OitPlanes& scattering, const LookupSettings& settings, ivec2 place);
+  Gathered gatherSpread(LookupChoice settings, vec2 centre, float variance, float layerZ);
+
+#define PLD_FN inline
+#define precise
+#include "shaders/shared/path_lookup.glsl"
+#undef precise
+#undef PLD_FN
+};
+
+}  // namespace pellucid::shading
