@@ -183,7 +183,8 @@ Compositor::Run Compositor::prepare(const Request& request) {
   if (run.plan.fitsWeight) {
     RunCounts unused;
     const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
-    PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), edges.get(), pass, shot_->camera);
+    PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), pass, shot_->camera,
+                       run.lighting->picture.gbuffer->data);
     const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
     run.pass.weight = run.plan.pass.weight = fittedWeight(context, moving, run.pass);
   }
@@ -245,7 +246,8 @@ Result Compositor::run(const Request& request) {
 
 Choice Compositor::probed(const Run& run, double tolerance) {
   const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
-  PassPicture moving(run.lighting->picture, depthPlanes(run.plan.passes), edges.get(), triangles(), shot_->camera);
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), triangles(), shot_->camera,
+                     run.lighting->picture.gbuffer->data);
   RunCounts unused;
   const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
   return journal_.time("probe method", [&] {
