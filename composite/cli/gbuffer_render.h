@@ -16,7 +16,7 @@ namespace pellucid::cli {
 
 struct GbufferFlags {
   std::vector<std::string> scenes;
-  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter, assetRoot;
+  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter, assetRoot, filter;
   std::optional<int> samples;
   std::optional<double> aoRadius;
   std::vector<std::string> overrides;
@@ -28,6 +28,8 @@ struct GbufferFlags {
 };
 
 Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
+
+void checkFilter(const GbufferFlags& flags);  // that the renderer honours it; throws UsageError
 
 // Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,

@@ -29,6 +29,7 @@ void gbuffer(const GbufferFlags& flags) {
   const Threads threads(flags.run.threads);
   Stages stages;
   const Window window = parseSize(flags.size);
+  checkFilter(flags);
   SceneOptions options;
   options.metresPerUnit = flags.unit;
   options.lumensPerWatt = flags.lumensPerWatt;
@@ -53,7 +54,9 @@ void gbuffer(const GbufferFlags& flags) {
   const OpaquePlanes planes = flags.renderer == "gl" ? rasterise(flags, scene, camera, window, stages, device)
                                                      : trace(flags, scene, camera, window, space, stages);
   if (flags.renderer == "gl" && !planes.lights.empty()) say("lights without shadows: --renderer embree traces them");
-  const std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
+  std::map<std::string, std::string> attributes{{"pellucid:renderer", flags.renderer}};
+  const PixelFilter filter = flags.filter.empty() ? PixelFilter() : parsePixelFilter(flags.filter);
+  if (!filter.isPixelSquare()) attributes[kFilterAttribute] = filterText(filter);
   say(stages.time("write", [&] {
     return writeLayers(flags.output, window, window, layersOf(planes), attributes, &camera, false, nullptr,
                        chromaticitiesToWrite(space));
@@ -85,8 +88,11 @@ void addGbuffer(CLI::App& app) {
   verb->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->required();
   verb->add_option("--camera", flags->camera,
                    "glTF camera by name, or eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical)");
-  verb->add_option("--samples", flags->samples, "Colour samples per pixel, box filter; embree 16, gl 1")
+  verb->add_option("--samples", flags->samples, "Colour samples per pixel; embree 16, gl 1")
       ->check(CLI::Range(1, kMostSamples));
+  verb->add_option("--filter", flags->filter,
+                   "With embree the pixel filter of the samples, box without: box, triangle, gaussian or "
+                   "blackman-harris, each with :RADIUS in pixels to each side or without");
   verb->add_option("--environment", flags->environment,
                    "Surrounding radiance: R,G,B, or with embree a lat-long EXR (middle +x, top +y); none is black");
   verb->add_option("--shadows", flags->shadows, "Default: exact with embree, off with gl")

@@ -128,7 +128,7 @@ const std::vector<EdgePixel>& Compositor::edges() {
 std::unique_ptr<EdgePasses> Compositor::edgePasses(const Plan& plan) {
   if (!plan.edges) return nullptr;
   std::vector<glm::dvec2> samples;
-  for (int i = 0; i < plan.passes; ++i) samples.push_back(samplePass(plan.pass, i, plan.passes).sample);
+  for (int i = 0; i < plan.passes; ++i) samples.push_back(samplePass(plan.pass, plan, i).sample);
   return std::make_unique<EdgePasses>(edges(), std::move(samples));
 }
 
@@ -170,7 +170,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& pass, const Run& ru
   do {
     mean = VeilMean();
     for (int i = 0; i < plan.passes; ++i) {
-      const PassSettings sample = samplePass(pass, i, plan.passes);
+      const PassSettings sample = samplePass(pass, plan, i);
       moving.moveTo(sample.sample, i);
       Veil veil = painter->paint(sample, i);
       journal.time("average", [&] {
@@ -242,7 +242,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
   const GBuffer& moved = *moving.picture().gbuffer;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
-    PassSettings sample = samplePass(run.pass, i, run.plan.passes);
+    PassSettings sample = samplePass(run.pass, run.plan, i);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
     sample.normalisation = sums.pass.normalisation;
     moving.moveTo(sample.sample, i);
@@ -259,6 +259,7 @@ RunCounts Compositor::accumulate(const Request& request, const std::function<voi
     made.planes.info.method = made.scatter.info.method = sums.method;
     made.planes.info.space = made.scatter.info.space = shot_->opaque.space;
     made.edges = run.plan.edges;
+    made.pixelFilter = run.plan.pixelFilter;
     if (i == 0) made.relit = relitPicture(*run.lighting);
     shows = shows || anyLayers(made.planes);
     each(std::move(made));

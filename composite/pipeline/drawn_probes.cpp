@@ -58,7 +58,7 @@ DrawnProbes::DrawnProbes(const PaintContext& context, const PassSettings& sample
 DrawnProbes::Pass DrawnProbes::passOf(const PassSettings& sample, int number) {
   const GBuffer& gbuffer = *context_.picture.gbuffer;
   Pass pass;
-  pass.sample = samplePass(sample, number, context_.plan.passes);
+  pass.sample = samplePass(sample, context_.plan, number);
   pass.number = number;
   pass.drawn = listed(pass.sample, VolumeRule::midDepth);
   pass.truth = truthOf(pass);
