@@ -30,4 +30,9 @@ glm::dvec2 samplePosition(int index, int count) {
   return {(index + 0.5) / count, radicalInverse2(static_cast<unsigned>(index)) + 0.5 / padded};
 }
 
+glm::dvec2 samplePosition(int index, int count, const PixelFilter& filter) {
+  const glm::dvec2 even = samplePosition(index, count);
+  return count <= 1 ? even : filter.placed(even);
+}
+
 }  // namespace pellucid

@@ -9,6 +9,7 @@
 #include "gbuffer/colour_space.h"
 #include "gbuffer/exr_document.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/pixel_filter.h"
 
 namespace pellucid {
 
@@ -41,9 +42,11 @@ struct OpaqueChoice {
   std::string depthChannel;
   std::string depthFile;  // "" where it is the picture's own
   std::string depthKind;
-  double farValue = 0;           // the value (file units) from which depth means nothing hit
-  double least = 0, most = 0;    // depths that were hit, as the file has them; both 0 where nothing was
-  std::string preset, presetBy;  // "" where nobody is recognised; by what, "attribute unreal/version"
+  double farValue = 0;                     // the value (file units) from which depth means nothing hit
+  double least = 0, most = 0;              // depths that were hit, as the file has them; both 0 where nothing was
+  std::string preset, presetBy;            // "" where nobody is recognised; by what, "attribute unreal/version"
+  std::optional<PixelFilter> pixelFilter;  // that the header names, or the producer uses by default
+  std::string pixelFilterBy;               // which of the two: "as the header says"
   std::size_t farPixels = 0, nonFiniteColour = 0, nonFiniteDepth = 0;
 };
 

@@ -162,6 +162,21 @@ DepthKind kindOf(const ReadOptions& options, const Producer* producer, const std
   return parseDepthKind(producer && !another ? producer->kind : "planar");
 }
 
+// What our own G-buffers say in their header, else what the producer uses unless it is told otherwise.
+void readPixelFilter(const ExrPart& part, const Producer* producer, OpaqueFile& file) {
+  if (const std::optional<std::string> text = part.text(kFilterAttribute)) {
+    file.choice.pixelFilter = pixelFilterOf(*text);
+    file.choice.pixelFilterBy = "as the picture's header says";
+    if (!file.choice.pixelFilter)
+      file.notes.push_back(
+          fmt::format("{}: found '{}', expected a filter as --filter takes it: not taken", kFilterAttribute, *text));
+    return;
+  }
+  if (!producer || !*producer->pixelFilter) return;
+  file.choice.pixelFilter = parsePixelFilter(producer->pixelFilter);
+  file.choice.pixelFilterBy = fmt::format("which {} uses by default", producer->title);
+}
+
 }  // namespace
 
 void readCamera(const ExrPart& part, double unit, OpaqueFile& file) {
@@ -215,6 +230,7 @@ OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, con
   file.choice.depthFile = partOf(file, depth.part).from;
   file.choice.preset = producer ? producer->name : "";
   file.choice.presetBy = recognised.by;
+  readPixelFilter(part, producer, file);
   file.metresPerUnit = options.metresPerUnit.value_or(producer ? producer->unit : 1.0);
   if (!beauty.view.empty() && options.beautyLayer.empty() && options.view.empty())
     file.notes.push_back(fmt::format("view {} is used; --view names another", beauty.view));

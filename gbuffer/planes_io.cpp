@@ -253,7 +253,17 @@ NewExr fileOf(const PassPlanes& pass) {
   NewExr file = fileOf(pass.planes, pass.rims);
   addRelit(pass.relit, file);
   file.attributes[kEdges] = pass.edges ? "resolve" : "off";
+  if (!pass.pixelFilter.isPixelSquare()) file.attributes[kFilterAttribute] = filterText(pass.pixelFilter);
   return file;
+}
+
+PixelFilter filterOf(const ExrPart& part, const std::string& path) {
+  const std::optional<std::string> text = part.text(kFilterAttribute);
+  const std::optional<PixelFilter> filter = text ? pixelFilterOf(*text) : PixelFilter();
+  if (!filter)
+    throw MeaningError(
+        fmt::format("{}: {}: found '{}', expected a filter as --filter takes it", path, kFilterAttribute, *text));
+  return *filter;
 }
 
 std::string passText(std::size_t index, std::size_t count) {
@@ -317,6 +327,7 @@ std::vector<PassPlanes> readPasses(const std::string& path) {
     pass.planes = planesOf(part, path, &pass.rims);
     pass.relit = relitOf(part, path);
     pass.edges = part.text(kEdges).value_or("off") == "resolve";
+    pass.pixelFilter = filterOf(part, path);
     if (!passes.empty() && pass.planes.data != passes[0].planes.data)
       throw MeaningError(
           fmt::format("{}: part {}: found another data window than the first part's, expected the same", path, i));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gbuffer/accum.h"
+#include "gbuffer/pixel_filter.h"
 #include "gbuffer/rim_planes.h"
 
 namespace pellucid {
@@ -25,7 +26,8 @@ struct PassPlanes {
   RimPlanes rims;
   // Of the first pass alone: the beauty as the layers' shadows leave it, and 1 where they changed it. Empty: nowhere.
   Image<glm::vec4> relit;
-  bool edges = false;  // at filtered edges of the picture each pass sees one of the two surfaces
+  PixelFilter pixelFilter;  // that the passes' places were drawn from
+  bool edges = false;       // at filtered edges of the picture each pass sees one of the two surfaces
 };
 // A part for each pass, in order, and one more after it where it has `scatter`; a single one as writePlanes() does it.
 //   attributes  of the first part's header, besides those of planes

@@ -17,6 +17,7 @@ std::vector<Producer> filmRenderers() {
        .kind = "planar",
        .normals = NormalSpace::worldZUp,
        .space = "Linear Rec.709 (sRGB)",
+       .pixelFilter = "blackman-harris:1.5",
        .givesWay = "composite",
        .nothing = "1e10; 1e11 outside a render border",
        .filter = "the first hit of the pixel's first sample, transparent things included; panoramas store rays",

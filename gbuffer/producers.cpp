@@ -102,6 +102,7 @@ std::string producersHelp() {
                         *row.space ? row.space + std::string(" unless chromaticities say otherwise")
                                    : std::string("as chromaticities say"),
                         kSpaces[static_cast<int>(row.normals)], row.occlusion, row.lightGroups, row.camera);
+    if (*row.pixelFilter) text += fmt::format("pixel filter {} by default; ", row.pixelFilter);
     text += fmt::format("facts: {}\n", row.source);
   }
   return text;

@@ -28,6 +28,7 @@ struct Producer {
   bool mayBeRamp = false;               // depth within 0..1 is a ramp rather than a distance: asked
   NormalSpace normals = NormalSpace::world;
   const char* space = "";  // of its colours where chromaticities do not say, of namedSpaces(); "" where it is not known
+  const char* pixelFilter = "";    // of its colours by default, as --filter takes it; "" where it is not known
   const char* givesWay = nullptr;  // a layer of colour that is not the picture beside others, lower case
   // What `pellucid help presets` says besides.
   const char* nothing = "1e9 or more";  // depth where nothing was hit

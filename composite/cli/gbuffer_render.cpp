@@ -56,6 +56,17 @@ Window parseSize(const std::string& text) {
   throw UsageError(fmt::format("--size: found '{}', expected WIDTHxHEIGHT, each from 1 to {}", text, kLongestEdge));
 }
 
+void checkFilter(const GbufferFlags& flags) {
+  if (flags.filter.empty()) return;
+  parsePixelFilter(flags.filter);
+  if (flags.renderer == "gl")
+    throw UsageError(fmt::format(
+        "--filter: found {} with --renderer gl, expected --renderer embree: gl samples pixel centres", flags.filter));
+  if (flags.samples == 1)
+    throw UsageError(fmt::format(
+        "--filter: found {} with --samples 1, expected 2 or more: one sample is the pixel's centre", flags.filter));
+}
+
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
                    std::optional<int> samples, const ColourSpace& space, const std::function<void(double)>& told,
                    Stages& stages) {
@@ -65,6 +76,9 @@ OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& 
   if (flags.textureFilter == "nearest")
     throw UsageError("--texture-filter: found nearest, expected bilinear with --renderer embree");
   if (flags.device >= 0) throw UsageError("--device: expected --renderer gl: Embree runs on the CPU");
+  OpaqueRenderSettings settings;
+  settings.samples = samples.value_or(settings.samples);
+  if (!flags.filter.empty()) settings.pixelFilter = parsePixelFilter(flags.filter);
   Environment environment;
   std::vector<std::string> notes;
   if (isColour(flags.environment))
@@ -73,8 +87,6 @@ OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& 
     environment =
         stages.time("read environment", [&] { return readEnvironment(flags.environment, notes, space.fromRec709); });
   say(notes);
-  OpaqueRenderSettings settings;
-  settings.samples = samples.value_or(settings.samples);
   settings.shadows = flags.shadows != "off";
   settings.aoRadius = static_cast<float>(flags.aoRadius.value_or(static_cast<double>(settings.aoRadius)));
   settings.progress = [notes = std::make_shared<SlowRender>(), told](double done) {

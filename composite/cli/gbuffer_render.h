@@ -21,7 +21,7 @@ namespace pellucid::cli {
 
 struct GbufferFlags {
   std::vector<std::string> scenes;
-  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter, assetRoot;
+  std::string output, renderer = "embree", size, camera, environment, shadows, textureFilter, assetRoot, filter;
   std::optional<int> samples, passes;
   std::optional<double> aoRadius;
   std::vector<std::string> overrides;
@@ -62,6 +62,8 @@ void writePart(const std::string& path, const RenderedPart& part, const std::str
 // Throws UsageError.
 std::optional<ShotMoment> playAnimations(const ShotTime& time, SceneOptions& options);
 Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
+
+void checkFilter(const GbufferFlags& flags);  // that the renderer honours it; throws UsageError
 
 // Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.
 //   samples  a pixel; else as many as usual

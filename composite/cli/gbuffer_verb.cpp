@@ -33,7 +33,10 @@ void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
   Stages stages;
   const RenderedPart part = renderPart(flags, false, stages, [&](double share) { frame.voice->stage("trace", share); });
   flags.preview.write(flags.colour.request(), flags.assetRoot, part.space, part.planes.beauty);
-  stages.time("write", [&] { writePart(flags.output, part, flags.renderer, frame.attributes); });
+  std::map<std::string, std::string> attributes = frame.attributes;
+  const PixelFilter filter = flags.filter.empty() ? PixelFilter() : parsePixelFilter(flags.filter);
+  if (!filter.isPixelSquare()) attributes[kFilterAttribute] = filterText(filter);
+  stages.time("write", [&] { writePart(flags.output, part, flags.renderer, attributes); });
   nlohmann::json report{
       {"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", part.opaqueInstances}};
   reportSpace(part.space, report);
@@ -47,6 +50,7 @@ void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
 RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, const std::function<void(double)>& told) {
   RenderedPart part;
   part.window = parseSize(flags.size);
+  checkFilter(flags);
   SceneOptions options;
   options.metresPerUnit = flags.unit;
   options.lumensPerWatt = flags.lumensPerWatt;
@@ -107,8 +111,11 @@ void addGbuffer(CLI::App& app) {
       "--camera", flags->camera,
       "glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical), or fit[:AZIMUTH,ELEVATION], "
       "which frames the scene from there (30,20)");
-  verb->add_option("--samples", flags->samples, "Colour samples per pixel, box filter; embree 16, gl 1")
+  verb->add_option("--samples", flags->samples, "Colour samples per pixel; embree 16, gl 1")
       ->check(CLI::Range(1, kMostSamples));
+  verb->add_option("--filter", flags->filter,
+                   "With embree the pixel filter of the samples, box without: box, triangle, gaussian or "
+                   "blackman-harris, each with :RADIUS in pixels to each side or without");
   verb->add_option("--environment", flags->environment,
                    "Surrounding radiance: R,G,B, or with embree a lat-long EXR (middle +x, top +y); none is black");
   verb->add_option("--shadows", flags->shadows, "Default: exact with embree, off with gl")

@@ -30,6 +30,7 @@ const std::vector<HelpRow> kRows{
     {"--indirect", kInput, "LAYER"},
     {"--layer", kInput, "NAME"},
     {"--edges", kPicture, ""},
+    {"--filter", kPicture, "SHAPE[:RADIUS]"},
     {"--beauty", kPicture, "LAYER"},
     {"--view", kPicture, "NAME"},
     {"--depth", kPicture, "CHANNEL|FILE.exr"},

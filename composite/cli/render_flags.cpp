@@ -55,6 +55,11 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
         ->capture_default_str();
   if (what.blurs) blur.addTo(verb);
   if (what.edges)
+    verb.add_option("--filter", filter,
+                    "Pixel filter of the picture, that --aa takes its places from: box, triangle, gaussian or "
+                    "blackman-harris, each with :RADIUS in pixels to each side or without; else as the picture's "
+                    "header or its program says, else box");
+  if (what.edges)
     edgesOption_ = verb.add_option("--edges", edges,
                                    "Pixels that the renderer filtered over an edge: resolve takes them apart into "
                                    "their two surfaces, which --aa composites at their own depths; off: one surface")
@@ -72,6 +77,7 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
 void RenderFlags::paintInto(Request& request) const {
   method.into(request);
   request.passes = passes;
+  if (!filter.empty()) request.pixelFilter = parsePixelFilter(filter);
   if (edgesOption_ && edgesOption_->count() > 0) request.edges = edges == "resolve" ? EdgeRule::resolve : EdgeRule::off;
   shadow.into(request);
   stochastic.into(request);

@@ -23,7 +23,7 @@ struct RenderVerb {
   bool listsToo = true;   // methods that have no sums
   bool precision = true;  // one tier
   bool passes = true;     // --aa with one number
-  bool edges = true;      // --edges
+  bool edges = true;      // --edges and --filter
   bool blurs = false;     // --shutter and the lens
   bool bends = true;      // --refract and --diffusion
   bool resolves = true;   // lookups, --resolve, --self-modulation and --layers
@@ -34,7 +34,7 @@ struct RenderVerb {
 };
 
 struct RenderFlags {
-  std::string opaque, systems = "off", edges = "resolve";
+  std::string opaque, systems = "off", edges = "resolve", filter;
   std::vector<std::string> inputs, layers;
   ReadFlags read;
   SceneFlags scene;

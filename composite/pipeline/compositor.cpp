@@ -149,7 +149,7 @@ const std::vector<EdgePixel>& Compositor::edges(const Plan& plan) {
 std::unique_ptr<EdgePasses> Compositor::edgePasses(const Plan& plan) {
   if (!plan.edges) return nullptr;
   std::vector<glm::dvec2> samples;
-  for (int i = 0; i < plan.passes; ++i) samples.push_back(samplePass(plan.pass, i, plan.passes).sample);
+  for (int i = 0; i < plan.passes; ++i) samples.push_back(samplePass(plan.pass, plan, i).sample);
   return std::make_unique<EdgePasses>(edges(plan), std::move(samples));
 }
 
@@ -198,7 +198,14 @@ Window Compositor::paintedArea(const Plan& plan, const Run& run) const {
                         (plan.as<PaintSums>() && !plan.isPublished() && !plan.resolvesOnDevice);
   const bool alone = run.sources->trianglesAlone() && !run.lighting->fog && plan.lowResolution == 1;
   if (!byPixels || !alone || plan.heldOut || shot_->deepOpaque) return gbuffer.data;
-  return screenBounds(shot_->scene, shot_->camera, gbuffer);
+  Window area = screenBounds(shot_->scene, shot_->camera, gbuffer);
+  const int reach =
+      static_cast<int>(std::ceil(plan.pixelFilter.radius));  // places of a wide filter lie in other pixels
+  area.x0 = std::max(area.x0 - reach, gbuffer.data.x0);
+  area.y0 = std::max(area.y0 - reach, gbuffer.data.y0);
+  area.x1 = std::min(area.x1 + reach, gbuffer.data.x1);
+  area.y1 = std::min(area.y1 + reach, gbuffer.data.y1);
+  return area;
 }
 
 Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run& run, Journal& journal,
@@ -214,7 +221,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
   do {
     mean = VeilMean();
     for (int i = 0; i < plan.passes; ++i) {
-      PassSettings sample = samplePass(pass, i, plan.passes);
+      PassSettings sample = samplePass(pass, plan, i);
       journal.reached(static_cast<double>(i) / plan.passes);
       if (motion.moves()) journal.time("pose", [&] { motion.moveTo(i, sample); });
       moving.moveTo(sample.sample, i, motion.picture());
@@ -343,7 +350,7 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
   const GBuffer& moved = *moving.picture().gbuffer;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
-    PassSettings sample = samplePass(run.pass, i, run.plan.passes);
+    PassSettings sample = samplePass(run.pass, run.plan, i);
     journal_.reached(static_cast<double>(i) / run.plan.passes);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
     sample.normalisation = sums.pass.normalisation;
@@ -361,6 +368,7 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
     made.planes.info.method = made.scatter.info.method = sums.method;
     made.planes.info.space = made.scatter.info.space = shot_->opaque.space;
     made.edges = run.plan.edges;
+    made.pixelFilter = run.plan.pixelFilter;
     if (i == 0) made.relit = relitPicture(*run.lighting);
     shows = shows || anyLayers(made.planes);
     each(std::move(made));

@@ -94,7 +94,7 @@ void DrawnProbes::placeProbes(const PassSettings& sample) {
 }
 
 DrawnProbes::Gathered DrawnProbes::gathered(const PassSettings& sample, int number) {
-  const PassSettings own = samplePass(sample, number, context_.plan.passes);
+  const PassSettings own = samplePass(sample, context_.plan, number);
   moving_.moveTo(own.sample, number);
   Gathered made{own, number, listed(own, VolumeRule::midDepth), std::nullopt};
   if (context_.plan.deepFiles) made.split.emplace(listed(own, VolumeRule::split));

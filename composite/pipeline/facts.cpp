@@ -11,6 +11,8 @@ ShotFacts factsOf(const Shot& shot) {
   ShotFacts facts;
   facts.width = shot.opaque.gbuffer.data.width();
   facts.height = shot.opaque.gbuffer.data.height();
+  facts.pixelFilter = shot.opaque.choice.pixelFilter;
+  facts.pixelFilterBy = shot.opaque.choice.pixelFilterBy;
   facts.hasScene = shot.hasScene;
   facts.hasCamera = shot.hasCamera;
   facts.moves = shot.moment && shot.files && shot.files->moves();

@@ -1,8 +1,11 @@
 // What a plan needs to know of a loaded shot, and nothing of its pixels.
 #pragma once
 #include <cstddef>
+#include <optional>
+#include <string>
 
 #include "composite/pipeline/shot.h"
+#include "gbuffer/pixel_filter.h"
 
 namespace pellucid {
 
@@ -21,7 +24,9 @@ struct ShotFacts {
   // Depths of all that is transparent, metres: of the whole scene, not of what a frame shows. 0 where nobody has asked
   // or nothing is. The nearer may lie behind the eye.
   double layersNear = 0.0, layersFar = 0.0;
-  std::size_t triangles = 0;  // of one copy of every primitive
+  std::size_t triangles = 0;               // of one copy of every primitive
+  std::optional<PixelFilter> pixelFilter;  // of the picture, where its header or its producer says
+  std::string pixelFilterBy;               // which of the two, for a sentence
 };
 
 // All but the depths of the layers.

@@ -117,7 +117,14 @@ void noteBlur(const Request& request, const ShotFacts& facts, Plan& plan) {
       "rest is composited exactly, and blurred things by the depth that the file gives them");
   if (request.edges == EdgeRule::resolve)
     plan.notes.emplace_back("--edges resolve: the picture's edges move with the camera, and are not taken apart");
-}
+  // One pass samples pixel centres, whatever the picture was filtered by.
+  void chooseFilter(const Request& request, const ShotFacts& facts, Plan& plan) {
+    if (plan.passes == 1) return;
+    plan.pixelFilter = request.pixelFilter.value_or(facts.pixelFilter.value_or(PixelFilter()));
+    if (!request.pixelFilter && facts.pixelFilter && !plan.pixelFilter.isPixelSquare())
+      plan.notes.push_back(
+          fmt::format("filter: {}, {}; --filter says otherwise", filterText(plan.pixelFilter), facts.pixelFilterBy));
+  }
 
 }  // namespace
 
@@ -157,6 +164,7 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   plan.deepFiles = facts.deepFiles > 0;
   plan.fog = request.fog.on();
   plan.passes = request.passes;
+  chooseFilter(request, facts, plan);
   plan.pictureMoves = movesPicture(request, facts);
   noteBlur(request, facts, plan);
   plan.edges = !plan.pictureMoves && request.edges.value_or(EdgeRule::resolve) == EdgeRule::resolve &&
@@ -200,10 +208,11 @@ Plan sumsPlanOf(const Plan& plan, const ShotFacts& facts) {
   return sums;
 }
 
-PassSettings samplePass(const PassSettings& pass, int index, int count) {
+PassSettings samplePass(const PassSettings& pass, const Plan& plan, int index) {
   PassSettings sample = pass;
-  sample.sample = samplePosition(index, count);
-  sample.footprint = 1.0f / std::sqrt(static_cast<float>(count));
+  sample.sample = samplePosition(index, plan.passes, plan.pixelFilter);
+  sample.footprint = 1.0f / std::sqrt(static_cast<float>(plan.passes));
+  if (plan.passes > 1) sample.footprint *= static_cast<float>(1.0 / plan.pixelFilter.peak());
   return sample;
 }
 
@@ -236,6 +245,7 @@ std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
                             plan.route == Route::drawnSums || plan.route == Route::foldedSums
                                 ? plan.resolvesOnDevice ? "resolved on the device" : "resolved on the CPU"
                                 : "composited on the CPU"));
+  if (plan.passes > 1) say("filter", filterText(plan.pixelFilter));
   say("edges", plan.edges ? "taken apart into their two surfaces" : "as pixels of one surface");
   say("memory", fmt::format("about {} MiB besides the picture", plan.bytes >> 20));
   for (const std::string& note : plan.notes) say("note", note);

@@ -37,6 +37,7 @@ struct Plan {
   bool deepFiles = false;  // among the layers
   bool fog = false;
   int passes = 1;                  // jittered
+  PixelFilter pixelFilter;         // that they are drawn from
   bool pictureMoves = false;       // from pass to pass: the camera moves, or a lens is open
   bool edges = false;              // filtered edges of the picture are taken apart
   int lowResolution = 1;           // pixels per texel of marked materials
@@ -61,8 +62,9 @@ Plan truthOf(const Plan& plan);
 // are the phenomenological ones.
 Plan sumsPlanOf(const Plan& plan, const ShotFacts& facts);
 
-// Pass `index` of `count`: where in the pixel, and how much of it that place stands for.
-PassSettings samplePass(const PassSettings& pass, int index, int count);
+// Pass `index` of the plan's: where in the pixel, and how much of it that place stands for where the filter weighs
+// most.
+PassSettings samplePass(const PassSettings& pass, const Plan& plan, int index);
 
 // One line per decision, for --explain and --stats.
 std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts);

@@ -109,6 +109,8 @@ const std::vector<Refusal>& refusals() {
       {"--resolve", "gl", "--method {}", "cpu", "it has no sums to resolve",
        [](const Request& r) { return r.resolveOnDevice && !hasSums(r); }},
       {"--samples", "a number", "--aa", "a multiple of --aa", "every pass holds as many samples", tracesSamples},
+      {"--filter", "a filter", "--aa 1", "none, or --aa 2 and more", "one pass samples pixel centres",
+       [](const Request& r) { return r.pixelFilter && r.passes == 1; }},
       {"--edges", "resolve", "--aa 1", "off, or --aa 2 and more", "one pass sees one surface of a pixel",
        [](const Request& r) { return r.edges == EdgeRule::resolve && r.passes == 1; }},
       {"--edges", "resolve", "--lens-radius or --f-stop", "off", "what is out of focus has no edges to take apart",
@@ -139,7 +141,10 @@ void dropUnread(Request& request) {
     sums.weightFrom.clear();
     sums.fitWeight = false;
   }
-  if (request.passes == 1) request.edges.reset();
+  if (request.passes == 1) {
+    request.edges.reset();
+    request.pixelFilter.reset();
+  }
   const bool published = request.tier == Tier::published;
   if (!normalises(request) || (published && sums.normalisation == shading::PLD_NORMALISE_SPECTRAL))
     sums.normalisation.reset();

@@ -21,6 +21,7 @@
 #include "engine_bridge/scene/pass_settings.h"
 #include "gbuffer/medium.h"
 #include "gbuffer/opaque_io.h"
+#include "gbuffer/pixel_filter.h"
 #include "gbuffer/tiers.h"
 
 namespace pellucid {
@@ -160,7 +161,10 @@ struct Request {
   std::optional<MethodDecision> decided;  // where nobody asked for a method: why it is this one
   Tier tier = Tier::float32;
   SumsRequest sums;
-  int passes = 1;                  // jittered, averaged
+  int passes = 1;  // jittered, averaged
+  // By which the picture was filtered: places of several passes are drawn from it. Else as its header or its producer
+  // says, else the pixel's square.
+  std::optional<PixelFilter> pixelFilter;
   std::optional<Shutter> shutter;  // each pass at its own time
   LensRequest lens;                // each pass from its own point of it
   std::optional<EdgeRule> edges;   // else resolve, where several passes can be dealt to two surfaces

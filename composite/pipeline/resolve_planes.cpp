@@ -97,6 +97,10 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
         throw MeaningError(fmt::format("{}: edges: found {}, expected {} as in {}", request.planes[k],
                                        more[0].edges ? "resolve" : "off", passes[0].edges ? "resolve" : "off",
                                        request.planes[0]));
+      if (more[0].pixelFilter != passes[0].pixelFilter)
+        throw MeaningError(fmt::format("{}: pixel filter: found {}, expected {} as in {}", request.planes[k],
+                                       filterText(more[0].pixelFilter), filterText(passes[0].pixelFilter),
+                                       request.planes[0]));
       if (!more[0].relit.empty()) passes[0].relit = more[0].relit;
       for (std::size_t i = 0; i < passes.size(); ++i) {
         const double factor = referenceFactor(more[i].planes.info.weight, passes[i].planes.info.weight);
@@ -142,11 +146,11 @@ std::vector<EdgePixel> edgesOf(const std::vector<PassPlanes>& passes, const GBuf
   return edgePixels(gbuffer, DepthPlanes(gbuffer, passes[0].planes.camera));
 }
 
-std::unique_ptr<EdgePasses> dealt(const std::vector<EdgePixel>& edges, std::size_t passes) {
+std::unique_ptr<EdgePasses> dealt(const std::vector<EdgePixel>& edges, const std::vector<PassPlanes>& passes) {
   if (edges.empty()) return nullptr;
   std::vector<glm::dvec2> samples;
-  for (std::size_t i = 0; i < passes; ++i)
-    samples.push_back(samplePosition(static_cast<int>(i), static_cast<int>(passes)));
+  for (std::size_t i = 0; i < passes.size(); ++i)
+    samples.push_back(samplePosition(static_cast<int>(i), static_cast<int>(passes.size()), passes[0].pixelFilter));
   return std::make_unique<EdgePasses>(edges, std::move(samples));
 }
 
@@ -216,7 +220,7 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   std::vector<ExtraLayer> ofPlanes;
   if (wantsPlanes(request.layers)) ofPlanes.push_back(planeLayer(request.layers, passes[0].planes));
   const std::vector<EdgePixel> pixels = journal.time("edges", [&] { return edgesOf(passes, result.opaque.gbuffer); });
-  const std::unique_ptr<EdgePasses> edges = dealt(pixels, passes.size());
+  const std::unique_ptr<EdgePasses> edges = dealt(pixels, passes);
   VeilMean mean;
   for (PassPlanes& pass : passes) {
     Veil veil =

@@ -26,12 +26,33 @@ struct Colour {
   float alpha = 0;
 };
 
+// Places of a pixel filter, looked up: every pixel of a picture asks for as many as it has samples.
+class FilterPlaces {
+ public:
+  explicit FilterPlaces(const PixelFilter& filter) {
+    if (filter.isPixelSquare()) return;
+    for (int i = 0; i <= kSteps; ++i)
+      places_.push_back(static_cast<float>(filter.placed(glm::dvec2(static_cast<double>(i) / kSteps)).x));
+  }
+  glm::vec2 of(glm::vec2 even) const { return places_.empty() ? even : glm::vec2(along(even.x), along(even.y)); }
+
+ private:
+  static constexpr int kSteps = 4096;
+  float along(float even) const {  // [0,1)
+    const float at = even * kSteps;
+    const auto i = static_cast<std::size_t>(at);
+    return glm::mix(places_[i], places_[i + 1], at - static_cast<float>(i));
+  }
+  std::vector<float> places_;  // along one axis
+};
+
 class OpaqueRenderer {
  public:
   OpaqueRenderer(const Scene& scene, const Camera& camera, const Window& display, const Window& data,
                  const Environment& environment, const OpaqueRenderSettings& settings)
       : scene_(scene),
         settings_(settings),
+        places_(settings.pixelFilter),
         environment_(environment),
         traced_(scene, camera),
         rays_(camera, display),
@@ -58,6 +79,7 @@ class OpaqueRenderer {
 
   const Scene& scene_;
   const OpaqueRenderSettings& settings_;
+  FilterPlaces places_;
   const Environment& environment_;
   OpaqueScene traced_;
   CameraRays rays_;
@@ -147,8 +169,9 @@ void OpaqueRenderer::block(int column0, int row0) {
     const bool atCentre = sample < 0 || settings_.samples == 1;
     for (int i = 0; i < 16; ++i)
       where[static_cast<std::size_t>(i)] =
-          atCentre ? glm::vec2(0.5f)
-                   : samplePoint(static_cast<std::uint32_t>(sample), pixelSeed(x0 + i % 4, y0 + i / 4, kPixel));
+          atCentre
+              ? glm::vec2(0.5f)
+              : places_.of(samplePoint(static_cast<std::uint32_t>(sample), pixelSeed(x0 + i % 4, y0 + i / 4, kPixel)));
     traced_.traceBlock(rays_, x0, y0, where, hits);
     for (int i = 0; i < 16; ++i) {
       if (!inside(i)) continue;

@@ -4,16 +4,18 @@
 
 #include "engine_bridge/embree/environment.h"
 #include "engine_bridge/scene/opaque_planes.h"
+#include "gbuffer/pixel_filter.h"
 
 namespace pellucid {
 
 struct OpaqueRenderSettings {
-  // Colour samples per pixel, averaged with equal weight over the pixel's square: the box filter that composite --aa
-  // uses. 1 is the pixel's centre. Z, N, albedo and AO are always the centre's.
+  // Colour samples per pixel, averaged with equal weight. 1 is the pixel's centre. Z, N, albedo and AO are always the
+  // centre's.
   int samples = 16;
-  bool shadows = true;    // false: nothing is in the way of a light or of the surroundings
-  float aoRadius = 1.0f;  // metres; 0 leaves AO out
-  int aoSamples = 64;     // rays per pixel
+  PixelFilter pixelFilter;  // that they are drawn from, as those of composite --aa are
+  bool shadows = true;      // false: nothing is in the way of a light or of the surroundings
+  float aoRadius = 1.0f;    // metres; 0 leaves AO out
+  int aoSamples = 64;       // rays per pixel
   // Called now and then with the part done, [0,1], from any thread but never from two at once.
   std::function<void(double)> progress;
 };

@@ -112,6 +112,31 @@ float coverageOf(float alpha) {
   return covered;
 }
 
+// Multiplies by the base texture. What the material covers of the sample, [0,1]. Takes derivatives.
+float coveredByBase(inout vec4 base) {
+#ifdef MASK_LEVELLED
+  vec4 factor = base;
+#endif
+#ifdef BASE_TEXTURE
+#ifdef BASE_WEIGHTED
+  base *= unweighted(texture(baseTexture, uvOf(0)));
+#else
+  base *= texture(baseTexture, uvOf(0));
+#endif
+#endif
+  float covered = coverageOf(base.a);
+#ifdef MASK_LEVELLED
+  float texels = texelsHere();
+  vec2 dx = dFdx(uvOf(0)), dy = dFdy(uvOf(0));
+  if (levelsBeyond(texels, maskResolved) > 0.0f) {
+    PartlyCovered here = partlyCovered(texels, dx, dy, factor.a);
+    base.rgb = factor.rgb * here.colour;
+    covered = here.coverage;
+  }
+#endif
+  return covered * material.covering.r;
+}
+
 // After surfaceHere(). Unit, on the side of the eye.
 vec3 normalHere(vec3 toEye) {
 #ifdef NORMAL_TEXTURE
@@ -152,26 +177,7 @@ Surface surfaceHere() {
 #ifdef VERTEX_COLOUR
   point.base *= vertexColour;
 #endif
-#ifdef MASK_LEVELLED
-  vec4 factor = point.base;
-#endif
-#ifdef BASE_TEXTURE
-#ifdef BASE_WEIGHTED
-  point.base *= unweighted(texture(baseTexture, uvOf(0)));
-#else
-  point.base *= texture(baseTexture, uvOf(0));
-#endif
-#endif
-  float covered = coverageOf(point.base.a);
-#ifdef MASK_LEVELLED
-  float texels = texelsHere();
-  vec2 dx = dFdx(uvOf(0)), dy = dFdy(uvOf(0));
-  if (levelsBeyond(texels, maskResolved) > 0.0f) {
-    PartlyCovered here = partlyCovered(texels, dx, dy, factor.a);
-    point.base.rgb = factor.rgb * here.colour;
-    covered = here.coverage;
-  }
-#endif
+  float covered = coveredByBase(point.base);
 #ifdef METALLIC_ROUGHNESS_TEXTURE
   vec4 metallicRoughness = texture(metallicRoughnessTexture, uvOf(1));
   point.roughness *= metallicRoughness.g;
@@ -191,5 +197,5 @@ Surface surfaceHere() {
   // What enters on a front face leaves through a back face: counted once.
   if (gl_FrontFacing) attenuation = attenuationOf(material.volume.rgb, ratio);
 #endif
-  return surfaceOf(point, covered * material.covering.r, attenuation, isUnlit());
+  return surfaceOf(point, covered, attenuation, isUnlit());
 }

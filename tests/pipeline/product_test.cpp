@@ -76,6 +76,11 @@ const Feature kFeatures[] = {
      }},
     {"a normalisation", [](Request& r) { r.sums.normalisation = shading::PLD_NORMALISE_PUBLISHED; }},
     {"self-modulation", [](Request& r) { r.sums.selfModulation = true; }},
+    {"a pixel filter",
+     [](Request& r) {
+       r.passes = 2;
+       r.pixelFilter = parsePixelFilter("blackman-harris");
+     }},
 };
 
 struct PictureKind {
