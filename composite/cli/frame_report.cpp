@@ -95,7 +95,7 @@ void FrameReport::failures(const std::vector<FrameRow>& rows) {
     if (row.outcome.state == FrameOutcome::State::failed && row.outcome.code == 2)
       throw UsageError(row.outcome.message);
   if (!failed.empty()) {
-    if (form_ != ProgressForm::json && form_ != ProgressForm::openjd) {
+    if (form_ != ProgressForm::json && form_ != ProgressForm::openjd && !saysJson()) {
       toStderr("frame  code  what failed\n");
       for (const FrameRow& row : rows)
         if (row.outcome.state == FrameOutcome::State::failed)

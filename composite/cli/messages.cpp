@@ -64,6 +64,10 @@ void sayAsJson() {
   asJson = true;
 }
 
+bool saysJson() {
+  return asJson;
+}
+
 void hearNotes(std::function<void(const std::string&)> ear) {
   listening = std::move(ear);
 }

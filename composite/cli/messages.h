@@ -36,6 +36,7 @@ inline Journal journal() {
 
 // Lines are JSON objects from now on: time (UTC), level, message, and the frame where there is one.
 void sayAsJson();
+bool saysJson();
 // A message as it would stand on stderr, with its end of line.
 //   frame  its name, or ""
 std::string messageLine(const std::string& level, const std::string& sentence, const std::string& frame = "");

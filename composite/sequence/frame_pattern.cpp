@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <filesystem>
 
@@ -42,7 +43,8 @@ Place placeAt(const std::string& text, std::size_t at) {
   }
   if (sign == '$' && at + 1 < text.size() && text[at + 1] == 'F') {
     const std::size_t end = digitsEnd(text, at + 2);
-    if (end > at + 3) return {};
+    const bool goesOn = end < text.size() && (std::isalpha(static_cast<unsigned char>(text[end])) || text[end] == '_');
+    if (end > at + 3 || goesOn) return {};  // $FILE is another name
     return {end - at, end == at + 2 ? 0 : text[at + 2] - '0', true};
   }
   return {};
