@@ -171,7 +171,9 @@ inline void addBody(const float* body, float weight, Float8& row) {
 // Weights of a row's taps within the kernel's reach, 0 beyond and where nothing diffuses; and whether all the others
 // are seen whole: passesWhole() of each.
 //   begin, end  of the row's taps that are stored
-inline bool weighRow(const PyramidTaps& of, int y, int begin, int end, const float* across, float* weights) {
+//   whole       -1 where a texel is
+inline bool weighRow(const PyramidTaps& of, int y, int begin, int end, const float* across, float* weights,
+                     std::int32_t* whole) {
   const SpreadLevel& texels = of.texels;
   const float dy = float(y) + 0.5f - of.place.y;
   const float* reaches = &texels.leastReach.at(begin - texels.stored.x0, y - texels.stored.y0);
@@ -191,7 +193,9 @@ inline bool weighRow(const PyramidTaps& of, int y, int begin, int end, const flo
     for (float& one : away) one = of.edge * std::sqrt(one) + PLD_SPREAD_PARTS * of.edge;
     Float8 far;
     lanes::load(away, far);
-    missed |= near & ~((rate <= of.rateLimit) & ((reach >= of.tailReach) | (reach >= far)));
+    const Int8 seen = (rate <= of.rateLimit) & ((reach >= of.tailReach) | (reach >= far));
+    missed |= near & ~seen;
+    std::memcpy(whole + (x - begin), &seen, sizeof seen);
     weight = near ? weight : Float8{};
     std::memcpy(weights + (x - begin), &weight, sizeof weight);
   }
@@ -201,22 +205,24 @@ inline bool weighRow(const PyramidTaps& of, int y, int begin, int end, const flo
 }
 
 // A row of which some texels are not seen whole.
-inline void addRow(const PyramidTaps& of, int y, int begin, int end, const float* weights, float down, Float8& row) {
+inline void addRow(const PyramidTaps& of, int y, int begin, int end, const float* weights, const std::int32_t* whole,
+                   float down, Float8& row) {
   const SpreadLevel& texels = of.texels;
   const float dy = float(y) + 0.5f - of.place.y;
   const SpreadTexel* bodies = texels.texels.row(y - texels.stored.y0) + (begin - texels.stored.x0);
-  for (int x = begin; x < end; ++x) {
-    const float weight = weights[x - begin];
+  Float8 sum = row;
+  for (int i = 0; i < end - begin; ++i) {
+    const float weight = weights[i];
     if (weight == 0.0f) continue;
-    const float dx = float(x) + 0.5f - of.place.x, r2 = dx * dx + dy * dy;
-    const SpreadBody& all = bodies[x - begin].body;
-    if (passesWhole(all, of.edge * std::sqrt(r2), of.edge, of.tailReach, of.rateLimit)) {
-      addBody(&all.colour.x, weight, row);
+    if (whole[i]) {
+      addBody(&bodies[i].body.colour.x, weight, sum);
       continue;
     }
+    const float dx = float(begin + i) + 0.5f - of.place.x;
     SpreadBody body;
-    if (seenPart(of, ivec2(x, y), r2, weight * down, body)) addBody(&body.colour.x, weight, row);
+    if (seenPart(of, ivec2(begin + i, y), dx * dx + dy * dy, weight * down, body)) addBody(&body.colour.x, weight, sum);
   }
+  row = sum;
 }
 
 constexpr int kRoom = (PLD_SPREAD_TAPS + 2 * kLanes) / kLanes * kLanes;
@@ -228,6 +234,7 @@ inline void addPyramidRows(const PyramidTaps& of, int top, int count, const floa
   const int begin = std::max(of.taps.x0, stored.x0), end = std::min(of.taps.x1, stored.x1);
   if (begin >= end) return;
   alignas(32) float weights[kRows][kRoom];
+  alignas(32) std::int32_t seen[kRows][kRoom];
   const float* bodies[kRows];
   bool whole = count == kRows;
   for (int k = 0; k < kRows; ++k) {
@@ -238,12 +245,12 @@ inline void addPyramidRows(const PyramidTaps& of, int top, int count, const floa
       whole = false;
       continue;
     }
-    whole = weighRow(of, y, begin, end, across, weights[k]) && whole;
+    whole = weighRow(of, y, begin, end, across, weights[k], seen[k]) && whole;
   }
   if (!whole) {
     for (int k = 0; k < count; ++k)
       if (top + k >= stored.y0 && top + k < stored.y1)
-        addRow(of, top + k, begin, end, weights[k], down[top + k - of.taps.y0], rows[k]);
+        addRow(of, top + k, begin, end, weights[k], seen[k], down[top + k - of.taps.y0], rows[k]);
     return;
   }
   constexpr std::size_t kStride = sizeof(SpreadTexel) / sizeof(float);
