@@ -14,7 +14,7 @@ class HelpText : public CLI::FormatterBase {
 std::string helpSentences(const CLI::Option& option);
 
 // Parts of it, for pages that are made of the same flags.
-std::string helpSentence(std::string text);                                  // a capital and a full stop
+std::string helpSentence(std::string text);                                 // a capital and a full stop
 std::string flagText(const CLI::Option& option, bool first = false);        // "-o, --output FILE", or its first name
 std::string placeText(const CLI::Option& option);                           // "SCENES..." of a positional
 std::string usageText(const CLI::App& verb);                                // "pellucid flatten FILES... -o FILE"
