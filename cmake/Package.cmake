@@ -54,8 +54,8 @@ function(package component name section summary description)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
 endfunction()
 
-# libepoxy opens these when a context is made; no linker knows of them.
-set(gl libegl1 libgl1-mesa-dri)
+# libepoxy and libglvnd open these when a context is made; no linker knows of them.
+set(gl libegl1 libgl1-mesa-dri libopengl0)
 set(same "(= ${PROJECT_VERSION}-1)")
 package(program pellucid graphics "composite transparency onto finished renders"
   "Glass, smoke, fog, particles and foliage from glTF or deep EXR files are\ncomposited exactly onto opaque pictures of any renderer, and written back\ninto the same EXR."
