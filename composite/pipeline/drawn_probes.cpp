@@ -65,8 +65,7 @@ double meanSize(const std::vector<glm::dvec3>& colours) {
 
 DrawnProbes::DrawnProbes(const PaintContext& context, PassPicture& moving, const PassSettings& sample)
     : context_(context), moving_(moving), grid_(context.picture.gbuffer->data, probesOf(context.plan)) {
-  placeProbes(sample);
-  const int probed = passesProbed(context.plan);
+  const int probed = placeProbes(sample);
   std::vector<Gathered> all;
   for (int i = 0; i < probed; ++i) all.push_back(gathered(sample, i * context.plan.passes / probed));
   if (!touchesAll()) {
@@ -81,16 +80,25 @@ DrawnProbes::DrawnProbes(const PaintContext& context, PassPicture& moving, const
   for (const Gathered& pass : all) passes_.push_back(passOf(pass));
 }
 
-// Closer together where layers touch few of the pixels, so that as many probes have something to tell.
-void DrawnProbes::placeProbes(const PassSettings& sample) {
-  if (touchesAll() || grid_.cell() == 1) return;
+// Closer together where layers touch few of the pixels, so that as many probes have something to tell; where even all
+// of those pixels are few, more of the passes are probed: highlights of one pass can be most of an error.
+int DrawnProbes::placeProbes(const PassSettings& sample) {
+  const int least = passesProbed(context_.plan);
+  if (touchesAll()) return least;
   const Gathered first = gathered(sample, 0);
   std::vector<std::uint8_t> touched(count(), 0);
   first.drawn.mark(touched);
-  const auto found = static_cast<std::size_t>(std::count(touched.begin(), touched.end(), 1));
-  constexpr std::size_t kMostPixels = std::size_t{1} << 30;
-  const std::size_t wanted = found == 0 ? kMostPixels : probesOf(context_.plan) * count() / found;
-  if (wanted > 2 * probesOf(context_.plan)) grid_ = ProbeGrid(context_.picture.gbuffer->data, wanted);
+  const auto found = std::max<std::size_t>(static_cast<std::size_t>(std::count(touched.begin(), touched.end(), 1)), 1);
+  const std::size_t wanted = probesOf(context_.plan) * count() / found,
+                    pixels = context_.picture.gbuffer->beauty.size();
+  std::size_t expected = found;
+  if (grid_.cell() > 1 && wanted > 2 * probesOf(context_.plan)) {
+    const std::size_t before = count();
+    grid_ = ProbeGrid(context_.picture.gbuffer->data, std::min(wanted, pixels));
+    expected = found * count() / before;
+  }
+  return static_cast<int>(std::clamp<std::size_t>(2 * kProbes / expected, static_cast<std::size_t>(least),
+                                                  static_cast<std::size_t>(context_.plan.passes)));
 }
 
 DrawnProbes::Gathered DrawnProbes::gathered(const PassSettings& sample, int number) {

@@ -53,7 +53,7 @@ class DrawnProbes {
     ProbeLists drawn;
     std::optional<ProbeLists> split;
   };
-  void placeProbes(const PassSettings& sample);
+  int placeProbes(const PassSettings& sample);  // the number of passes that are probed
   Gathered gathered(const PassSettings& sample, int number);
   Pass passOf(const Gathered& from);
   ProbeLists listed(const PassSettings& sample, VolumeRule rule) const;
