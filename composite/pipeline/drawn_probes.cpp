@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "composite/list_order.h"
 #include "composite/over.h"
 #include "composite/pipeline/low_layers.h"
 #include "composite/pipeline/sums.h"
@@ -118,6 +119,7 @@ DrawnProbes::Pass DrawnProbes::passOf(const Gathered& from) {
   for (const glm::ivec2& place : grid_.places())
     pass.weight.push_back(context_.picture.passWeight ? context_.picture.passWeight->at(place.x, place.y) : 1.0f);
   pass.drawn = from.drawn.finish();
+  orderByDepthAndBits(pass.drawn);  // so that no order of submission chooses a weight
   pass.truth = truthOf(from, pass);
   if (passes_.empty()) depths_ = depthsIn(pass);
   const Fog* fog = pass.sample.fog.get();
@@ -144,7 +146,10 @@ void DrawnProbes::listLow(Pass& pass) const {
   pass.view = lowViewOf(gbuffer, solidsOf(triangles, fullResolutionPart(context_.plan, pass.sample)),
                         context_.shot.camera, context_.plan.lowResolution);
   const DrawnOver over(triangles, *pass.view, gbuffer, context_.shot.camera);
-  triangles.fragments(lowResolutionPart(pass.sample), [&](const FragmentLists& lists) { pass.low.push_back(lists); });
+  triangles.fragments(lowResolutionPart(pass.sample), [&](const FragmentLists& lists) {
+    pass.low.push_back(lists);
+    orderByDepthAndBits(pass.low.back());
+  });
 }
 
 // What lowSums() draws, from the lists.

@@ -23,7 +23,9 @@ struct Foliage {
     EXPECT_EQ(made.code, 0) << made.err;
   }
   Ended accumulate(const std::string& name, std::vector<std::string> more) const {
-    std::vector<std::string> arguments{"accumulate", stem + ".exr", stem + ".glb", "-o", folder + "/" + name + ".exr"};
+    // One weight for all: each would be fitted to what it draws.
+    std::vector<std::string> arguments{"accumulate", stem + ".exr", stem + ".glb", "-o", folder + "/" + name + ".exr",
+                                       "--weight",   "eq5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(arguments);
   }
