@@ -32,9 +32,6 @@ struct Lens {
 Lens lensOf(const LensRequest& request, const ExrDocument& document, const GBuffer& gbuffer, const Camera& camera,
             Journal& journal);
 
-// Whether two cameras see the same: from the same place, through the same frustum.
-bool sameView(const Camera& a, const Camera& b);
-
 // The pinhole at a point of the lens, its picture shifted so that what is in focus stays where it is.
 //   point  on an aperture of radius 1, x to the right and y up
 Camera throughLens(const Camera& camera, const Lens& lens, glm::dvec2 point);

@@ -5,6 +5,7 @@
 
 #include "composite/pipeline/foliage_step.h"
 #include "engine_bridge/scene/working_space.h"
+#include "gbuffer/camera_match.h"
 
 namespace pellucid {
 namespace {

@@ -1,6 +1,6 @@
 #include "composite/pipeline/pass_picture.h"
 
-#include "composite/pipeline/lens.h"
+#include "gbuffer/camera_match.h"
 #include "gbuffer/moved_depth.h"
 
 namespace pellucid {
