@@ -89,7 +89,7 @@ void SceneTextures::upload() {
     const auto references = material.textures();
     for (const TextureRef* reference : references)
       if (const int index = reference->texture; index >= 0 && !ranges_.count(index))
-        ranges_.emplace(index, rangeOf(scene.textures.at(static_cast<std::size_t>(index))));
+        ranges_.emplace(index, rangeOf(scene_.textures.at(static_cast<std::size_t>(index))));
     for (std::size_t slot = 0; slot < references.size(); ++slot) {
       const Key key = keyOf(material, slot);
       if (key.texture < 0 || uploaded_.count(key)) continue;
