@@ -33,6 +33,12 @@ bool same(const SceneOptions& a, const SceneOptions& b) {
          seconds == seconds2 && by == by2 && animations == animations2;
 }
 
+bool same(const ShotTime& a, const ShotTime& b) {
+  const auto& [frame, seconds, rate, offset, animations] = a;
+  const auto& [frame2, seconds2, rate2, offset2, animations2] = b;
+  return frame == frame2 && seconds == seconds2 && rate == rate2 && offset == offset2 && animations == animations2;
+}
+
 bool same(const ColourRequest& a, const ColourRequest& b) {
   const auto& [config, by, space] = a;
   const auto& [config2, by2, space2] = b;
@@ -81,10 +87,10 @@ bool same(const std::variant<Kinds...>& a, const std::variant<Kinds...>& b) {
 }  // namespace
 
 bool sameShot(const ShotRequest& a, const ShotRequest& b) {
-  const auto& [opaque, memory, inputs, read, scene, camera, surroundings, colour] = a;
-  const auto& [opaque2, memory2, inputs2, read2, scene2, camera2, surroundings2, colour2] = b;
+  const auto& [opaque, memory, inputs, read, scene, time, camera, surroundings, colour] = a;
+  const auto& [opaque2, memory2, inputs2, read2, scene2, time2, camera2, surroundings2, colour2] = b;
   return opaque == opaque2 && memory == memory2 && inputs == inputs2 && same(read, read2) && same(scene, scene2) &&
-         same(camera, camera2) && same(surroundings, surroundings2) && same(colour, colour2);
+         same(time, time2) && same(camera, camera2) && same(surroundings, surroundings2) && same(colour, colour2);
 }
 
 }  // namespace pellucid::python
