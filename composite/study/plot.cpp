@@ -78,7 +78,8 @@ Plot studyPlot(const std::vector<StudyRow>& rows) {
         {PlotLayout::left - 6, py(std::pow(10, d)) + 4, exact && d == y0 ? "0" : fmt::format("1e{:.0f}", d), 1});
   }
   plot.texts.push_back({0.5 * (PlotLayout::left + PlotLayout::right), PlotLayout::bottom + 36, "seconds", 0});
-  plot.texts.push_back({16, 0.5 * (PlotLayout::top + PlotLayout::bottom), "RMSE against sorted over", 0, true});
+  const PlotText upright{16, 0.5 * (PlotLayout::top + PlotLayout::bottom), "RMSE against sorted over", 0, true};
+  plot.texts.push_back(upright);
   std::vector<const StudyRow*> front;
   for (const StudyRow& row : rows)
     if (row.front) front.push_back(&row);
