@@ -50,7 +50,7 @@ float thicknessTexel() {
   return texture(thicknessTexture, uvOf(4)).g;
 }
 
-#if defined(MASK_UNLEVELLED) || defined(MASK_LEVELLED)
+#ifdef MASK_UNLEVELLED
 // Of the base texture, under this sample. Takes derivatives.
 float texelsHere() {
   vec2 at = uvOf(0) * vec2(textureSize(baseTexture, 0));
@@ -72,17 +72,19 @@ vec4 baseTexelAt(vec2 uv, float level) {
 }
 
 // A sample beyond that level.
+//   across  texelsAcross
+//   beyond  how many levels
 //   dx, dy  of texture coordinates, from pixel to pixel
 //   factor  on the texture's alpha
-PartlyCovered partlyCovered(float texels, vec2 dx, vec2 dy, float factor) {
+PartlyCovered partlyCovered(float across, float beyond, vec2 dx, vec2 dy, float factor) {
   vec2 uv = uvOf(0);
-  float cutoff = material.interface_.w, left = cutLeft(levelsBeyond(texels, maskResolved));
+  float cutoff = material.interface_.w, left = cutLeft(beyond);
   vec4 texel = baseTexelAt(uv, maskResolved);
   float alpha = factor * texel.a, rim = 0.0f;
 #ifdef MASK_SMOOTH
   rim = footprint * left * (abs(factor * baseTexelAt(uv + dx, maskResolved).a - alpha) +
                             abs(factor * baseTexelAt(uv + dy, maskResolved).a - alpha));
-  vec4 kept = factor >= cutoff ? baseTexelAt(uv, keptLevel(texels, maskResolved, footprint)) : vec4(0.0f);
+  vec4 kept = factor >= cutoff ? baseTexelAt(uv, keptLevel(across, maskResolved, footprint)) : vec4(0.0f);
 #else
   vec4 kept = texel;
   left = 1.0f;
@@ -95,9 +97,10 @@ PartlyCovered partlyCovered(float texels, vec2 dx, vec2 dy, float factor) {
 #endif
 
 // Takes derivatives: to be called before any discard.
-float coverageOf(float alpha) {
+//   rimWidth  of a mask, as a part of what alpha changes by over the sample
+float coverageOf(float alpha, float rimWidth) {
 #if defined(MASK_SMOOTH)
-  float rim = footprint * fwidth(alpha);
+  float rim = footprint * fwidth(alpha) * rimWidth;
 #ifdef MASK_UNLEVELLED
   rim *= rimLeft(texelsHere());
 #endif
@@ -114,22 +117,28 @@ float coverageOf(float alpha) {
 
 // Multiplies by the base texture. What the material covers of the sample, [0,1]. Takes derivatives.
 float coveredByBase(inout vec4 base) {
+  float rimWidth = 1.0f;
 #ifdef MASK_LEVELLED
   vec4 factor = base;
-#endif
-#ifdef BASE_TEXTURE
+  vec2 uv = uvOf(0), size = vec2(textureSize(baseTexture, 0)), dx = dFdx(uv), dy = dFdy(uv);
+  float across = texelsAcross(dx * size, dy * size, footprint), under = texelsUnder(dx * size, dy * size, footprint);
+  vec4 texel = texture(baseTexture, uv);
+  // Aslant, the sampler would take a level that is not cut.
+  if (levelsBeyond(across, maskResolved) > 0.0f) texel = baseTexelAt(uv, maskResolved);
+  base *= unweighted(texel);
+  rimWidth = rimLeft(across * exp2(-maskResolved));
+#elif defined(BASE_TEXTURE)
 #ifdef BASE_WEIGHTED
   base *= unweighted(texture(baseTexture, uvOf(0)));
 #else
   base *= texture(baseTexture, uvOf(0));
 #endif
 #endif
-  float covered = coverageOf(base.a);
+  float covered = coverageOf(base.a, rimWidth);
 #ifdef MASK_LEVELLED
-  float texels = texelsHere();
-  vec2 dx = dFdx(uvOf(0)), dy = dFdy(uvOf(0));
-  if (levelsBeyond(texels, maskResolved) > 0.0f) {
-    PartlyCovered here = partlyCovered(texels, dx, dy, factor.a);
+  float beyond = levelsBeyond(under, maskResolved);
+  if (beyond > 0.0f) {
+    PartlyCovered here = partlyCovered(across, beyond, dx, dy, factor.a);
     base.rgb = factor.rgb * here.colour;
     covered = here.coverage;
   }

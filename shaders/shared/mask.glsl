@@ -28,9 +28,17 @@ PLD_FN float rimLeft(float texels) {
   return clamp(2.0f - texels, 0.0f, 1.0f);
 }
 
-// How many mip levels a sample lies beyond the coarsest that holds a mask's pattern; above 0, what it sees is partly
-// covered.
-//   texels    texelsAcross, of the finest level
+// Edge of a square with as many texels as lie under a sample. A surface seen aslant has more of them one way than the
+// other; its pattern is lost where this edge says so.
+//   dx, dy, edge  as of texelsAcross
+PLD_FN float texelsUnder(vec2 dx, vec2 dy, float edge) {
+  precise float area = dx.x * dy.y - dx.y * dy.x;
+  precise float under = sqrt(abs(area)) * edge;
+  return under;
+}
+
+// How many mip levels a sample lies beyond the coarsest that holds a mask's pattern.
+//   texels    of the finest level along its edge
 //   resolved  that level
 PLD_FN float levelsBeyond(float texels, float resolved) {
   return log2(max(texels, 1e-6f)) - resolved;

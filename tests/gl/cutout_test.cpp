@@ -317,6 +317,8 @@ TEST(CutOuts, NoSeamBetweenWhatIsSolidAndWhatIsPartlyCovered) {
       Material material = unlitBlend({1, 1, 1}, 1.0f);
       material.alphaMode = AlphaMode::mask;
       material.baseColorTexture.texture = stage.texture(256, 4, texels);
+      stage.scene.textures[0].wrapT = Wrap::repeat;
+      material.baseColorTexture.uvTransform[1][1] = static_cast<float>(size);  // as many texels down as across
       const double edge = 256.0 / size;
       stage.quad(0, 0, edge, 4, 2.0, stage.add(material));
       std::vector<double> covered(64, 0.0);
