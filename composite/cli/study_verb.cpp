@@ -39,7 +39,7 @@ void study(const StudyFlags& flags, FrameRun& frame, const std::shared_ptr<KeptW
     part = 1.0 / static_cast<double>(all);
     before = part * static_cast<double>(done);
   };
-  const StudyOutcome outcome = runStudy(compositor, candidates, base, flags.repeats, begins);
+  const StudyOutcome outcome = runStudy(compositor, candidates, flags.repeats, begins);
   const OpaqueFile& picture = compositor.shot().opaque;
   writeStudy(flags.folder, picture, outcome);
   frame.summary = jsonOf(outcome.rows, picture.space);

@@ -117,14 +117,16 @@ void noteBlur(const Request& request, const ShotFacts& facts, Plan& plan) {
       "rest is composited exactly, and blurred things by the depth that the file gives them");
   if (request.edges == EdgeRule::resolve)
     plan.notes.emplace_back("--edges resolve: the picture's edges move with the camera, and are not taken apart");
-  // One pass samples pixel centres, whatever the picture was filtered by.
-  void chooseFilter(const Request& request, const ShotFacts& facts, Plan& plan) {
-    if (plan.passes == 1) return;
-    plan.pixelFilter = request.pixelFilter.value_or(facts.pixelFilter.value_or(PixelFilter()));
-    if (!request.pixelFilter && facts.pixelFilter && !plan.pixelFilter.isPixelSquare())
-      plan.notes.push_back(
-          fmt::format("filter: {}, {}; --filter says otherwise", filterText(plan.pixelFilter), facts.pixelFilterBy));
-  }
+}
+
+// One pass samples pixel centres, whatever the picture was filtered by.
+void chooseFilter(const Request& request, const ShotFacts& facts, Plan& plan) {
+  if (plan.passes == 1) return;
+  plan.pixelFilter = request.pixelFilter.value_or(facts.pixelFilter.value_or(PixelFilter()));
+  if (!request.pixelFilter && facts.pixelFilter && !plan.pixelFilter.isPixelSquare())
+    plan.notes.push_back(
+        fmt::format("filter: {}, {}; --filter says otherwise", filterText(plan.pixelFilter), facts.pixelFilterBy));
+}
 
 }  // namespace
 

@@ -126,8 +126,8 @@ std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vect
   return candidates;
 }
 
-StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base,
-                      int repeats, const std::function<void(std::size_t done, std::size_t all)>& begins) {
+StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, int repeats,
+                      const std::function<void(std::size_t done, std::size_t all)>& begins) {
   Journal& journal = compositor.journal();
   StudyOutcome outcome;
   outcome.rows.resize(candidates.size());

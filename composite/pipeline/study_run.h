@@ -32,7 +32,7 @@ struct StudyOutcome {
 // weight is fitted, to what it draws itself. Its seconds are without the fit.
 //   repeats  timed runs of each after one that is not counted, >= 1
 //   begins   is told before each candidate how many are done, of how many; may be null
-StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, const Request& base,
-                      int repeats, const std::function<void(std::size_t done, std::size_t all)>& begins = nullptr);
+StudyOutcome runStudy(Compositor& compositor, const std::vector<StudyCandidate>& candidates, int repeats,
+                      const std::function<void(std::size_t done, std::size_t all)>& begins = nullptr);
 
 }  // namespace pellucid

@@ -114,7 +114,7 @@ void studyInto(Studied& made, const Words& words) {
   const std::vector<StudyCandidate> candidates = flags.candidates(base);
   Compositor compositor(base, [](const std::string& note) { cli::say(note); });
   if (!flags.folder.empty()) cli::makeFolder(flags.folder);
-  made.outcome = runStudy(compositor, candidates, base, flags.repeats);
+  made.outcome = runStudy(compositor, candidates, flags.repeats);
   if (!flags.folder.empty()) cli::writeStudy(flags.folder, compositor.shot().opaque, made.outcome);
 }
 

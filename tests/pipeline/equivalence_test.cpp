@@ -175,7 +175,7 @@ TEST_F(Equivalence, StudyMeasuresWhatCompositeDraws) {
     const auto candidates = studyCandidates(base, {"phenomenological", "weighted", "average", "stochastic", "mlab:4"},
                                             {1}, {Tier::float32, Tier::exact, Tier::published},
                                             [](const std::string& method, int) { return paintOf(method); });
-    const StudyOutcome outcome = runStudy(compositor, candidates, base, 1);
+    const StudyOutcome outcome = runStudy(compositor, candidates, 1);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       Request request = candidates[i].request;
       request.measure = true;
