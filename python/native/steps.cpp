@@ -102,6 +102,7 @@ void flattenInto(Flattened& made, const Words& words) {
 
 struct Studied {
   StudyOutcome outcome;
+  ColourSpace space;
   Notes notes;
 };
 
@@ -115,6 +116,7 @@ void studyInto(Studied& made, const Words& words) {
   Compositor compositor(base, [](const std::string& note) { cli::say(note); });
   if (!flags.folder.empty()) cli::makeFolder(flags.folder);
   made.outcome = runStudy(compositor, candidates, flags.repeats);
+  made.space = compositor.shot().opaque.space;
   if (!flags.folder.empty()) cli::writeStudy(flags.folder, compositor.shot().opaque, made.outcome);
 }
 
@@ -202,9 +204,9 @@ py::dict study(const Words& words) {
   py::list pictures;
   for (const Image<glm::vec3>& picture : made->outcome.pictures) pictures.append(viewOf(picture, made));
   py::dict found;
-  found["rows"] = plainOf(cli::jsonOf(made->outcome.rows));
+  found["rows"] = plainOf(cli::jsonOf(made->outcome.rows, made->space));
   found["pictures"] = pictures;
-  found["weight"] = made->outcome.weight;
+  found["machine"] = made->outcome.machine;
   found["notes"] = made->notes;
   return found;
 }
