@@ -91,12 +91,12 @@ int DrawnProbes::placeProbes(const PassSettings& sample) {
   first.drawn.mark(touched);
   const auto found = std::max<std::size_t>(static_cast<std::size_t>(std::count(touched.begin(), touched.end(), 1)), 1);
   const std::size_t wanted = probesOf(context_.plan) * count() / found,
-                    pixels = context_.picture.gbuffer->beauty.size();
+                    pixels = context_.picture.gbuffer->viewZ.size();
   std::size_t expected = found;
   if (grid_.cell() > 1 && wanted > 2 * probesOf(context_.plan)) {
     const std::size_t before = count();
     grid_ = ProbeGrid(context_.picture.gbuffer->data, std::min(wanted, pixels));
-    expected = found * count() / before;
+    expected = std::max<std::size_t>(found * count() / before, 1);
   }
   return static_cast<int>(std::clamp<std::size_t>(2 * kProbes / expected, static_cast<std::size_t>(least),
                                                   static_cast<std::size_t>(context_.plan.passes)));
