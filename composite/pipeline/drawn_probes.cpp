@@ -214,7 +214,7 @@ Veil DrawnProbes::veilOfLists(const Pass& pass, const PassSettings& sample) {
 std::vector<glm::dvec3> DrawnProbes::shown(const Veil& veil) const {
   std::vector<glm::dvec3> pictures;
   for (std::size_t i = 0; i < count(); ++i) {
-    const glm::dvec3 behind(context_.picture.gbuffer->beauty.at(grid_.places()[i].x, grid_.places()[i].y));
+    const glm::dvec3 behind(context_.picture.centres->beauty.at(grid_.places()[i].x, grid_.places()[i].y));
     pictures.push_back(veil.touched[i] ? glm::dvec3(veil.light[i]) + glm::dvec3(veil.transmission[i]) * behind
                                        : behind);
   }
@@ -251,7 +251,7 @@ double DrawnProbes::brokenPart(const shading::WeightSettings& weight, double tol
 }
 
 double DrawnProbes::layers() const {
-  const double cell = grid_.cell(), pixels = static_cast<double>(context_.picture.gbuffer->beauty.size());
+  const double cell = grid_.cell(), pixels = static_cast<double>(context_.picture.gbuffer->viewZ.size());
   return static_cast<double>(passes_[0].drawn.fragments.size()) * cell * cell / pixels;
 }
 
