@@ -107,8 +107,9 @@ TEST(PassArea, BoundsHoldWhateverAnySampleMeets) {
       const auto depths = depthsOf(stage, settings, false);
       for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
-          if (!depths[static_cast<std::size_t>(y * kWidth + x)].empty())
+          if (!depths[static_cast<std::size_t>(y * kWidth + x)].empty()) {
             ASSERT_TRUE(x >= bounds.x0 && x < bounds.x1 && y >= bounds.y0 && y < bounds.y1) << x << ", " << y;
+          }
     }
   }
 }
