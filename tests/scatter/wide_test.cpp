@@ -141,7 +141,9 @@ TEST(FoldExact, WhatScattersAloneHasTheSameBits) {
         ASSERT_EQ(std::memcmp(&kept.light.at(x, y).a, &all.light.at(x, y).a, sizeof(float)), 0);
         ASSERT_EQ(kept.diffuseZ.at(x, y), all.diffuseZ.at(x, y));
         ASSERT_EQ(kept.solid.at(x, y), all.solid.at(x, y));
-        if (kept.disperses()) ASSERT_EQ(kept.dispersion.at(x, y), all.dispersion.at(x, y));
+        if (kept.disperses()) {
+          ASSERT_EQ(kept.dispersion.at(x, y), all.dispersion.at(x, y));
+        }
       }
   }
 }

@@ -98,11 +98,13 @@ TEST(Digests, TellTextsAndTheirBoundsApart) {
 
 TEST(Digests, AFileIsReadAgainWhenItChanges) {
   const std::string path = test::freshFolder("digest") + "/a.bin";
-  std::ofstream(path) << std::string(3000000, 'a');
+  std::string bytes(3000000, 'a');
+  std::ofstream(path) << bytes;
   FileDigests files;
   const std::string first = files.of(path);
   EXPECT_EQ(files.of(path), first);
-  std::ofstream(path) << std::string(2999999, 'a') + "b";
+  bytes.back() = 'b';
+  std::ofstream(path) << bytes;
   EXPECT_NE(files.of(path), first);
   EXPECT_THROW(files.of(path + ".not"), InputError);
 }
