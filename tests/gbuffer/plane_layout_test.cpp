@@ -50,7 +50,8 @@ LayerModel offline(bool coloured, bool light, bool scatters, bool disperses, Pla
 }
 
 LayerModel engine(PlaneTier tier, bool coloured, bool light, bool refracts, bool diffuses, bool disperses, bool front) {
-  LayerModel model{tier, 0, 0, coloured, light, refracts, diffuses, disperses, front};
+  LayerModel model{tier, 0, 0, coloured, light, refracts, diffuses, disperses};
+  model.front = front;
   model.nearestDepths = false;
   return model;
 }
