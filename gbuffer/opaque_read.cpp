@@ -169,7 +169,7 @@ void readPixelFilter(const ExrPart& part, const Producer* producer, OpaqueFile& 
     file.choice.pixelFilterBy = "as the picture's header says";
     if (!file.choice.pixelFilter)
       file.notes.push_back(
-          fmt::format("{}: found '{}', expected a filter as --filter takes it: not taken", kFilterAttribute, *text));
+          fmt::format("{}: found '{}', expected a shape and a radius, as 'box:0.5': not taken", kFilterAttribute, *text));
     return;
   }
   if (!producer || !*producer->pixelFilter) return;

@@ -214,8 +214,10 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
   const std::unique_ptr<EdgePasses> edges = edgePasses(plan);
   PassMotion motion(*run.request, plan, run.lens, *shot_, triangles(), device_);
   PassSettings pass = settings;
-  pass.area = motion.moves() ? run.lighting->picture.gbuffer->data : paintedArea(plan, run);
-  PassPicture moving(run.lighting->picture, depthPlanes(plan), edges.get(), triangles(), shot_->camera, pass.area);
+  const Window& data = run.lighting->picture.gbuffer->data;
+  const Window area = motion.moves() ? data : paintedArea(plan, run);
+  if (area != data) pass.area = area;  // else passes at other resolutions take the settings too
+  PassPicture moving(run.lighting->picture, depthPlanes(plan), edges.get(), triangles(), shot_->camera, area);
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
   VeilMean mean;

@@ -38,7 +38,8 @@ class BlenderShot : public ::testing::Test {
     return image;
   }
   static std::string prefixOf(const std::string& path) {
-    for (const ExrChannel& channel : readExr(path).parts[0].channels)
+    const ExrDocument document = readExr(path);
+    for (const ExrChannel& channel : document.parts[0].channels)
       if (channel.name == "ViewLayer.Combined.R") return "ViewLayer.Combined.";
     return "";
   }

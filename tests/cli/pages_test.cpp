@@ -68,7 +68,7 @@ TEST_F(Pages, BashCompletes) {
         .out;
   };
   EXPECT_EQ(completed("pellucid comp", 1), "composite compare\n");
-  EXPECT_EQ(completed("pellucid composite --meth", 2), "--method\n");
+  EXPECT_EQ(completed("pellucid composite --meth", 2), "--method --method-from\n");
   EXPECT_EQ(completed("pellucid composite --shadows exa", 3), "exact exact:opaque\n");
   EXPECT_EQ(completed("pellucid accumulate --measu", 2), "\n") << "a flag of another verb";
   EXPECT_EQ(completed("pellucid composite --shadow-views sho", 3), "shot.exr\n");
