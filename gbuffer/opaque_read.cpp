@@ -168,8 +168,8 @@ void readPixelFilter(const ExrPart& part, const Producer* producer, OpaqueFile& 
     file.choice.pixelFilter = pixelFilterOf(*text);
     file.choice.pixelFilterBy = "as the picture's header says";
     if (!file.choice.pixelFilter)
-      file.notes.push_back(
-          fmt::format("{}: found '{}', expected a shape and a radius, as 'box:0.5': not taken", kFilterAttribute, *text));
+      file.notes.push_back(fmt::format("{}: found '{}', expected a shape and a radius, as 'box:0.5': not taken",
+                                       kFilterAttribute, *text));
     return;
   }
   if (!producer || !*producer->pixelFilter) return;

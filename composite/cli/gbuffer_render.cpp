@@ -56,6 +56,13 @@ Window parseSize(const std::string& text) {
   throw UsageError(fmt::format("--size: found '{}', expected WIDTHxHEIGHT, each from 1 to {}", text, kLongestEdge));
 }
 
+std::map<std::string, std::string> withFilter(const GbufferFlags& flags,
+                                              std::map<std::string, std::string> attributes) {
+  const PixelFilter filter = flags.filter.empty() ? PixelFilter() : parsePixelFilter(flags.filter);
+  if (!filter.isPixelSquare()) attributes[kFilterAttribute] = filterText(filter);
+  return attributes;
+}
+
 void checkFilter(const GbufferFlags& flags) {
   if (flags.filter.empty()) return;
   parsePixelFilter(flags.filter);

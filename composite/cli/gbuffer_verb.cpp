@@ -33,10 +33,7 @@ void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
   Stages stages;
   const RenderedPart part = renderPart(flags, false, stages, [&](double share) { frame.voice->stage("trace", share); });
   flags.preview.write(flags.colour.request(), flags.assetRoot, part.space, part.planes.beauty);
-  std::map<std::string, std::string> attributes = frame.attributes;
-  const PixelFilter filter = flags.filter.empty() ? PixelFilter() : parsePixelFilter(flags.filter);
-  if (!filter.isPixelSquare()) attributes[kFilterAttribute] = filterText(filter);
-  stages.time("write", [&] { writePart(flags.output, part, flags.renderer, attributes); });
+  stages.time("write", [&] { writePart(flags.output, part, flags.renderer, withFilter(flags, frame.attributes)); });
   nlohmann::json report{
       {"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", part.opaqueInstances}};
   reportSpace(part.space, report);

@@ -90,8 +90,7 @@ int DrawnProbes::placeProbes(const PassSettings& sample) {
   std::vector<std::uint8_t> touched(count(), 0);
   first.drawn.mark(touched);
   const auto found = std::max<std::size_t>(static_cast<std::size_t>(std::count(touched.begin(), touched.end(), 1)), 1);
-  const std::size_t wanted = probesOf(context_.plan) * count() / found,
-                    pixels = context_.picture.gbuffer->viewZ.size();
+  const std::size_t wanted = probesOf(context_.plan) * count() / found, pixels = context_.picture.gbuffer->viewZ.size();
   std::size_t expected = found;
   if (grid_.cell() > 1 && wanted > 2 * probesOf(context_.plan)) {
     const std::size_t before = count();
