@@ -46,7 +46,18 @@ std::string Program::build(const GlFunctions& gl, const std::string& file, const
   return {};
 }
 
+GLint Program::place(const GlFunctions& gl, const char* uniform) const {
+  for (Kept& one : kept_) {
+    if (one.uniform == uniform) return one.place;
+    if (one.uniform) continue;
+    one = {uniform, gl.GetUniformLocation(name, uniform)};
+    return one.place;
+  }
+  return gl.GetUniformLocation(name, uniform);
+}
+
 void Program::destroy(const GlFunctions& gl) {
+  for (Kept& one : kept_) one = {};
   if (name) gl.DeleteProgram(name);
   name = 0;
 }

@@ -14,7 +14,16 @@ class Program {
   void destroy(const GlFunctions& gl);
 
   GLuint name = 0;
-  GLint place(const GlFunctions& gl, const char* uniform) const { return gl.GetUniformLocation(name, uniform); }
+  // Asked of GL once for each name; names are literals.
+  GLint place(const GlFunctions& gl, const char* uniform) const;
+
+ private:
+  static constexpr int kKept = 12;
+  struct Kept {
+    const char* uniform;
+    GLint place;
+  };
+  mutable Kept kept_[kKept] = {};
 };
 
 }  // namespace pellucid::c

@@ -15,4 +15,7 @@ void writeFrontOrTail(Layer layer, WeightSettings settings, bool front) {
   writeFront(packFront(layer, sums.depth), front);
   writeOitSums(sums, layer.z);
   if (front) writeNothing();
+#ifdef NEAREST_Z
+  NEAREST_Z = layer.z;  // of all layers
+#endif
 }

@@ -104,8 +104,7 @@ class Scene {
     if (kind.features & PLD_FEATURE_SOLIDS) stages.push_back(PLD_STAGE_SOLIDS);
     if (kind.method == PLD_METHOD_FRONT_TAIL && kind.tier != PLD_TIER_EXACT) stages.push_back(PLD_STAGE_FRONT);
     stages.push_back(PLD_STAGE_LAYERS);
-    const bool rimsApart = kind.method != PLD_METHOD_FRONT_TAIL && kind.method != PLD_METHOD_OVER;
-    if ((kind.features & PLD_FEATURE_RIMS) && rimsApart) stages.push_back(PLD_STAGE_RIMS);
+    if ((kind.features & PLD_FEATURE_RIMS) && kind.method != PLD_METHOD_FRONT_TAIL) stages.push_back(PLD_STAGE_RIMS);
     if (kind.features & PLD_FEATURE_LOW_RESOLUTION) stages.push_back(PLD_STAGE_LOW);
     for (const pld_stage stage : stages) programs_.push_back(programOf(stage));
   }
@@ -214,8 +213,6 @@ const Kind kKinds[] = {
     {"grey, linear depth", PLD_METHOD_WEIGHTED, PLD_TIER_EXACT, 0, PLD_DEPTH_LINEAR},
     {"front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, kColoured | PLD_FEATURE_SOLIDS, PLD_DEPTH_DEVICE},
     {"front+tail, rims", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, PLD_FEATURE_RIMS, PLD_DEPTH_DEVICE},
-    {"over, solids", PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_SOLIDS, PLD_DEPTH_DEVICE},
-    {"over, rims", PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_RIMS, PLD_DEPTH_DEVICE},
     {"rims, low resolution", PLD_METHOD_WEIGHTED, PLD_TIER_EXACT,
      kColoured | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION, PLD_DEPTH_DEVICE},
     {"rims, low resolution, all phenomena", PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT,

@@ -46,6 +46,21 @@ TEST(BridgeOver, LayersInOnePlaneMerge) {
   EXPECT_LE(difference.largest, 6e-8);
 }
 
+TEST(BridgeOver, NoOrderChangesABit) {
+  GlContext context;
+  for (const bool coincides : {false, true}) {
+    const Wanted wanted{.solids = true, .coincides = coincides};
+    Shot shot(wanted);
+    const std::vector<float> forth = bridged(shot, wanted, PLD_TIER_EXACT, PLD_METHOD_OVER);
+    for (std::size_t i = 0; i + 1 < shot.lists.offsets.size(); ++i)
+      std::reverse(shot.lists.fragments.begin() + static_cast<std::ptrdiff_t>(shot.lists.offsets[i]),
+                   shot.lists.fragments.begin() + static_cast<std::ptrdiff_t>(shot.lists.offsets[i + 1]));
+    const std::vector<float> back = bridged(shot, wanted, PLD_TIER_EXACT, PLD_METHOD_OVER);
+    ASSERT_EQ(forth.size(), back.size());
+    EXPECT_EQ(std::memcmp(forth.data(), back.data(), forth.size() * sizeof(float)), 0) << coincides;
+  }
+}
+
 // No feature is needed for what sums would have to be asked to keep.
 TEST(BridgeOver, KeepsColourAndLightUnasked) {
   GlContext context;
