@@ -42,7 +42,8 @@ std::string Program::build(const GlFunctions& gl, const std::string& file, const
     return file + ": " + failure;
   }
   gl.UseProgram(name);
-  for (const SamplerUnit& sampler : stage.samplers) gl.Uniform1i(gl.GetUniformLocation(name, sampler.name.c_str()), sampler.unit);
+  for (const SamplerUnit& sampler : stage.samplers)
+    gl.Uniform1i(gl.GetUniformLocation(name, sampler.name.c_str()), sampler.unit);
   return {};
 }
 
