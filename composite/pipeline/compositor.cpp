@@ -180,7 +180,12 @@ Compositor::Run Compositor::prepare(const Request& request) {
   run.sources = std::make_unique<LayerSources>(pass);
   if (!shot_->deep.empty()) run.sources->join(deepFiles(shot_->deep));
   if (run.lighting->fog) run.sources->join(fogRuns());
-  if (pass) placeOccluders(request.foliage, run.pass, *pass, *run.lighting->picture.gbuffer, shot_->camera, journal_);
+  if (pass) {
+    // Leaves that the passes resolve are occluders, at whatever distance one sample a pixel would resolve them.
+    PassSettings drawn = samplePass(run.pass, run.plan, 0);
+    placeOccluders(request.foliage, drawn, *pass, *run.lighting->picture.gbuffer, shot_->camera, journal_);
+    run.pass.occlusion = drawn.occlusion;
+  }
   if (run.plan.fitsWeight) {
     RunCounts unused;
     const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);

@@ -22,7 +22,6 @@ std::vector<std::string> surfaceDefines(const Material& material, bool vertexCol
   define("VERTEX_COLOUR", vertexColours);
   define("BLEND", material.alphaMode == AlphaMode::blend);
   define("MASK_SMOOTH", material.alphaMode == AlphaMode::mask && frame.mask == MaskEdge::smooth);
-  define("MASK_CUT", material.alphaMode == AlphaMode::mask && frame.cutsMasks);
   define("MASK_HARD", material.alphaMode == AlphaMode::mask && frame.mask == MaskEdge::hard);
   const bool transmits = material.transmission > 0.0f;
   define("BASE_TEXTURE", material.baseColorTexture.texture >= 0);

@@ -27,7 +27,6 @@ constexpr std::size_t kOutputs = 12;
 
 struct FrameFeatures {
   MaskEdge mask = MaskEdge::smooth;
-  bool cutsMasks = false;  // at any distance, however little is left of their pattern
   bool lights = false, surroundings = false;
   bool shadows = false;                     // there are maps of what is in the lights' way
   bool shadowRays = false;                  // or rays have found it for every fragment

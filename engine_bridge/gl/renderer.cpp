@@ -160,7 +160,6 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.prune = settings.scatter.prune;
   features_.probes = settings.probeCell > 1;
   features_.mask = settings.mask;
-  features_.cutsMasks = cutsMasks_;
   features_.lights = lights_ > 0;
   features_.shadowRays = features_.lights && settings.shadowRays != nullptr;
   features_.shadows = features_.lights && settings.shadows != nullptr && !features_.shadowRays;
@@ -198,9 +197,7 @@ void Renderer::begin(const Window& superTile, const PassSettings& settings, std:
 
 void Renderer::solidDepth(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes,
                           Image<float>& z) {
-  cutsMasks_ = true;
   prepare(superTile, settings, geometryBytes);
-  cutsMasks_ = false;
   if (!features_.solids) return;
   targets_->beginSolidDepth();
   draw(Output::solid, tiles());

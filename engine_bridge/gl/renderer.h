@@ -110,7 +110,6 @@ class Renderer {
 
   PassSettings settings_;
   std::size_t geometryBytes_ = 0;
-  bool cutsMasks_ = false;  // while the depth of solids alone is drawn
   FrameFeatures features_;
   FrameBlock frame_;
   std::optional<Targets> targets_;

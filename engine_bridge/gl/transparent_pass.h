@@ -63,7 +63,7 @@ class TransparentPass {
   // Whether some material of the scene is cut out, lit by surroundings, and has rims to infer occlusion for.
   bool wantsOccluders(const PassSettings& settings) const;
   // Depth of the nearest fragment that hides everything, at pixel centres, of the data window: planar metres, +inf for
-  // none; masks are cut at any distance. What the occluders of such a pass are made from.
+  // none. What the occluders of such a pass are made from.
   Image<float> solidDepth(const PassSettings& settings);
   // What accumulate() has left open of the rims when the settings' occlusion has no rims: their light from around, at
   // the same sample. Empty when the settings have no occluders, or no leaf wants some.

@@ -81,9 +81,6 @@ PartlyCovered partlyCovered(float across, float beyond, vec2 dx, vec2 dy, float 
   float cutoff = material.interface_.w, left = cutLeft(beyond);
   vec4 texel = baseTexelAt(uv, maskResolved);
   float alpha = factor * texel.a, rim = 0.0f;
-#ifdef MASK_CUT
-  left = 1.0f;
-#endif
 #ifdef MASK_SMOOTH
   rim = footprint * left * (abs(factor * baseTexelAt(uv + dx, maskResolved).a - alpha) +
                             abs(factor * baseTexelAt(uv + dy, maskResolved).a - alpha));
