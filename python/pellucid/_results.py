@@ -110,10 +110,10 @@ class Study:
 
     rows: a dict for each method and number of passes, as study.json holds them.
     pictures: (height, width, 3) float32 of each row.
-    weight: that the weighed methods had.
+    machine: the device and the threads that rows were timed on, and how.
     """
 
     rows: List[Dict[str, Any]]
     pictures: List[numpy.ndarray]
-    weight: str
+    machine: str
     notes: List[str]

@@ -10,7 +10,7 @@ import pellucid
 from pellucid._words import words
 
 VERBS = ("composite", "accumulate", "resolve", "flatten", "compare", "study")
-OF_TERMINALS = {"help", "json", "stats", "explain", "output"}
+OF_TERMINALS = {"help", "json", "stats", "explain", "output", "frames", "jobs", "skip_existing", "progress", "log_json"}
 
 
 @pytest.mark.parametrize("verb", VERBS)
