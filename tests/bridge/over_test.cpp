@@ -103,20 +103,8 @@ struct Outputs {
 };
 Outputs outputsOf(const Shot& shot, const Wanted& wanted, pld_tier tier, pld_method method) {
   Host host(kShotWidth, kShotHeight);
-  host.upload(shot.gbuffer);
-  pld_create_info info = host.info();
-  info.features = featuresOf(wanted) | PLD_FEATURE_OUTPUTS;
-  info.tier = tier;
-  info.method = method;
-  info.fragments_per_pixel = 10.0f;
-  info.storage_binding = 7;
-  pld_pass* pass = host.create(info);
+  pld_pass* pass = drawnBy(host, shot, wanted, tier, method, PLD_FEATURE_OUTPUTS);
   if (!pass) return {};
-  std::vector<pld_stage> stages;
-  if (wanted.solids) stages.push_back(PLD_STAGE_SOLIDS);
-  if (method == PLD_METHOD_FRONT_TAIL && tier != PLD_TIER_EXACT) stages.push_back(PLD_STAGE_FRONT);
-  stages.push_back(PLD_STAGE_LAYERS);
-  replay(pass, shot.lists, host.frame(), stages);
   Outputs outputs;
   for (const pld_view view : {PLD_VIEW_REACTIVE, PLD_VIEW_NEAREST_DEPTH}) {
     pld_target target = host.target();

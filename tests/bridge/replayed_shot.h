@@ -87,23 +87,31 @@ inline uint32_t featuresOf(const Wanted& wanted) {
   return features;
 }
 
-inline std::vector<float> bridged(const Shot& shot, const Wanted& wanted, pld_tier tier, pld_method method) {
-  Host host(kShotWidth, kShotHeight);
+// A pass of the host's with all stages of the shot drawn, for pld_resolve(); null where it could not be made.
+//   more  features besides those that the shot needs
+inline pld_pass* drawnBy(Host& host, const Shot& shot, const Wanted& wanted, pld_tier tier, pld_method method,
+                         uint32_t more = 0) {
   host.upload(shot.gbuffer);
   pld_create_info info = host.info();
-  info.features = featuresOf(wanted);
+  info.features = featuresOf(wanted) | more;
   info.tier = tier;
   info.method = method;
   info.fragments_per_pixel = 10.0f;
   info.storage_binding = 7;
   pld_pass* pass = host.create(info);
-  if (!pass) return {};
+  if (!pass) return nullptr;
   std::vector<pld_stage> stages;
   if (wanted.solids) stages.push_back(PLD_STAGE_SOLIDS);
   if (method == PLD_METHOD_FRONT_TAIL && tier != PLD_TIER_EXACT) stages.push_back(PLD_STAGE_FRONT);
   stages.push_back(PLD_STAGE_LAYERS);
   replay(pass, shot.lists, host.frame(), stages);
-  return host.finish(pass);
+  return pass;
+}
+
+inline std::vector<float> bridged(const Shot& shot, const Wanted& wanted, pld_tier tier, pld_method method) {
+  Host host(kShotWidth, kShotHeight);
+  pld_pass* pass = drawnBy(host, shot, wanted, tier, method);
+  return pass ? host.finish(pass) : std::vector<float>();
 }
 
 struct Difference {

@@ -1,5 +1,5 @@
-// What Pellucid uses of oneTBB, over std::thread, for builds under ThreadSanitizer: Debian's library is not instrumented,
-// so the sanitizer sees none of its hand-overs between threads and takes every one of them for a race.
+// What Pellucid uses of oneTBB, over std::thread, for builds under ThreadSanitizer: Debian's library is not
+// instrumented, so the sanitizer sees none of its hand-overs between threads and takes every one of them for a race.
 #pragma once
 #include <algorithm>
 #include <atomic>
