@@ -11,7 +11,7 @@
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
 #include "gbuffer/published.h"
-#include "shaders/low_resolution.h"
+#include "shaders/low_resolution_text.h"
 
 namespace pellucid {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "gbuffer/image.h"
-#include "shaders/spread_pyramid.h"
+#include "shaders/spread_pyramid_text.h"
 
 namespace pellucid::shading {
 

@@ -8,7 +8,7 @@
 
 #include "gbuffer/camera.h"
 #include "gbuffer/gbuffer.h"
-#include "shaders/medium.h"
+#include "shaders/medium_text.h"
 
 namespace pellucid {
 

@@ -1,8 +1,8 @@
 #include <new>
 
+#include "composite/cli/application.h"
 #include "composite/cli/help_groups.h"
 #include "composite/cli/messages.h"
-#include "composite/cli/program.h"
 #include "composite/cli/suggest.h"
 #include "composite/cli/verb_outputs.h"
 #include "composite/cli/verbs.h"

@@ -7,7 +7,7 @@
 #include "composite/cli/results.h"
 #include "composite/cli/row_gatherer.h"
 #include "composite/cli/verbs.h"
-#include "composite/deep/channels.h"
+#include "composite/deep/sample_channels.h"
 #include "composite/pipeline/compositor.h"
 
 namespace pellucid::cli {

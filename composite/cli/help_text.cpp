@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "composite/cli/application.h"
 #include "composite/cli/help_groups.h"
-#include "composite/cli/program.h"
 
 namespace pellucid::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <sstream>
 
+#include "composite/cli/application.h"
 #include "composite/cli/help_text.h"
-#include "composite/cli/program.h"
 #include "composite/cli/suggest.h"
 #include "composite/methods/method.h"
 #include "engine_bridge/scene/set_keys.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "composite/deep/channels.h"
+#include "composite/deep/sample_channels.h"
 #include "shaders/shading.h"
 
 namespace pellucid::cli {

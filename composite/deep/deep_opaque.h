@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "composite/deep/channels.h"
+#include "composite/deep/sample_channels.h"
 #include "composite/gather.h"
 #include "composite/veil.h"
 #include "gbuffer/fragments.h"

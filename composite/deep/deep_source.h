@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "composite/deep/channels.h"
+#include "composite/deep/sample_channels.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "composite/deep/channels.h"
+#include "composite/deep/sample_channels.h"
 #include "gbuffer/exr_document.h"
 #include "gbuffer/image.h"
 

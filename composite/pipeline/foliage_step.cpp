@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "composite/occluders.h"
+#include "composite/picture_occluders.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid {

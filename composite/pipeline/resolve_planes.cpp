@@ -9,7 +9,7 @@
 #include "composite/antialias.h"
 #include "composite/deep/placed_sums.h"
 #include "composite/edges.h"
-#include "composite/occluders.h"
+#include "composite/picture_occluders.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/resolve_step.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine_bridge/c/caster_table.h"
-#include "engine_bridge/c/textures.h"
+#include "engine_bridge/c/host_textures.h"
 
 namespace pellucid::c {
 namespace {

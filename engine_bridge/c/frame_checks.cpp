@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine_bridge/c/textures.h"
+#include "engine_bridge/c/host_textures.h"
 #include "shaders/weights.h"
 
 namespace pellucid::c {

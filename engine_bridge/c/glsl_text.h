@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine_bridge/c/permutation.h"
+#include "engine_bridge/c/pass_permutation.h"
 
 namespace pellucid::c {
 

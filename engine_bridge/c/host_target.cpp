@@ -1,6 +1,6 @@
 #include "engine_bridge/c/host_target.h"
 
-#include "engine_bridge/c/textures.h"
+#include "engine_bridge/c/host_textures.h"
 
 namespace pellucid::c {
 

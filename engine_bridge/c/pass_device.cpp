@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "engine_bridge/c/textures.h"
+#include "engine_bridge/c/host_textures.h"
 
 namespace pellucid::c {
 

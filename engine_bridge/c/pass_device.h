@@ -2,7 +2,7 @@
 // library's own needs. All parts of a pass work over one Device.
 #pragma once
 #include "engine_bridge/c/kept_fences.h"
-#include "engine_bridge/c/permutation.h"
+#include "engine_bridge/c/pass_permutation.h"
 #include "engine_bridge/c/programs.h"
 #include "engine_bridge/c/saved_state.h"
 #include "engine_bridge/c/timers.h"

@@ -1,6 +1,6 @@
 #include "engine_bridge/c/rim_stage.h"
 
-#include "engine_bridge/c/textures.h"
+#include "engine_bridge/c/host_textures.h"
 #include "shaders/plane_defines.h"
 
 namespace pellucid::c {

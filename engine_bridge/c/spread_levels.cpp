@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shaders/spread_pyramid.h"
+#include "shaders/spread_pyramid_text.h"
 
 namespace pellucid::c {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "engine_bridge/c/permutation.h"
+#include "engine_bridge/c/pass_permutation.h"
 
 namespace pellucid::c {
 

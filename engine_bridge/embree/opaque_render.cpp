@@ -7,7 +7,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "engine_bridge/embree/lighting.h"
+#include "engine_bridge/embree/point_lighting.h"
 #include "engine_bridge/embree/sampling.h"
 
 namespace pellucid {

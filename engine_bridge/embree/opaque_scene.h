@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine_bridge/embree/camera_rays.h"
-#include "engine_bridge/embree/device.h"
+#include "engine_bridge/embree/embree_device.h"
 #include "engine_bridge/embree/surface_sampler.h"
 #include "engine_bridge/scene/scene.h"
 

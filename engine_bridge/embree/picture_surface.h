@@ -1,7 +1,7 @@
 // What a G-buffer shows, as a surface for rays: quads between every four pixels that lie near each other, as
 // shaders/gl/picture_mesh.vert draws them into shadow maps.
 #pragma once
-#include "engine_bridge/embree/device.h"
+#include "engine_bridge/embree/embree_device.h"
 #include "gbuffer/gbuffer.h"
 
 namespace pellucid::rays {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine_bridge/embree/device.h"
+#include "engine_bridge/embree/embree_device.h"
 #include "engine_bridge/embree/triangle.h"
 #include "engine_bridge/scene/placed.h"
 

@@ -13,7 +13,7 @@
 
 #include "engine_bridge/gl/fences.h"
 #include "engine_bridge/gl/gl_objects.h"
-#include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/errors.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine_bridge/gl/gl_objects.h"
-#include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/volume_texture.h"
 #include "gbuffer/medium.h"
 

@@ -6,10 +6,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "engine_bridge/gl/blocks.h"
 #include "engine_bridge/gl/fences.h"
+#include "engine_bridge/gl/frame_blocks.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/permutation.h"
-#include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/scene_textures.h"
 #include "engine_bridge/gl/targets.h"
 #include "engine_bridge/scene/placed.h"

@@ -6,7 +6,7 @@
 
 #include "engine_bridge/gl/fog_pass.h"
 #include "engine_bridge/gl/fragment_lists.h"
-#include "engine_bridge/gl/lean_lists.h"
+#include "engine_bridge/gl/lean_drawing.h"
 #include "engine_bridge/gl/published_targets.h"
 #include "engine_bridge/gl/renderer.h"
 #include "engine_bridge/gl/solid_hash.h"

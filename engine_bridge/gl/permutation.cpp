@@ -1,6 +1,6 @@
 #include "engine_bridge/gl/permutation.h"
 
-#include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/frame_blocks.h"
 #include "shaders/plane_defines.h"
 
 namespace pellucid::gl {

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine_bridge/gl/blocks.h"
 #include "engine_bridge/gl/fog_pass.h"
+#include "engine_bridge/gl/frame_blocks.h"
 #include "engine_bridge/gl/geometry_stream.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/permutation.h"
-#include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/scene_textures.h"
 #include "engine_bridge/gl/shadow_ray_table.h"
 #include "engine_bridge/gl/shadow_textures.h"

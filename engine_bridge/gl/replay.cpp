@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine_bridge/gl/blocks.h"
 #include "engine_bridge/gl/fences.h"
+#include "engine_bridge/gl/frame_blocks.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/plane_targets.h"
-#include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "gbuffer/errors.h"
 #include "shaders/plane_defines.h"

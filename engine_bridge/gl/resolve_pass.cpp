@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "engine_bridge/gl/fences.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/plane_formats.h"
-#include "engine_bridge/gl/program.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/plane_values.h"
 #include "shaders/plane_defines.h"
-#include "shaders/spread_pyramid.h"
+#include "shaders/spread_pyramid_text.h"
 
 namespace pellucid {
 namespace {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/frame_blocks.h"
 #include "engine_bridge/gl/geometry_stream.h"
-#include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/scene_textures.h"
 #include "engine_bridge/gl/shadow_filter.h"
 #include "engine_bridge/gl/shadow_pass.h"

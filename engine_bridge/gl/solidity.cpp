@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/frame_blocks.h"
 
 namespace pellucid::gl {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "samples/cad/parts.h"
+#include "samples/cad/machine_parts.h"
 #include "samples/generate/sample.h"
 
 namespace pellucid::samples {

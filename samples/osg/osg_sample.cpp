@@ -24,7 +24,7 @@
 #include <limits>
 
 #include "samples/osg/pellucid_bin.h"
-#include "samples/osg/scene.h"
+#include "samples/osg/still_life.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 #pragma once
-// What every stage knows about the frame. Mirrors FrameBlock in engine_bridge/gl/blocks.h.
+// What every stage knows about the frame. Mirrors FrameBlock in engine_bridge/gl/frame_blocks.h.
 layout(std140, binding = 0) uniform Frame {
   mat4 clipFromView;
   vec4 surroundings;     // rgb constant environment radiance

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "engine_bridge/gl/blocks.h"
+#include "engine_bridge/gl/frame_blocks.h"
 #include "engine_bridge/gl/geometry_stream.h"
 #include "engine_bridge/gl/permutation.h"
 #include "engine_bridge/scene/placed.h"

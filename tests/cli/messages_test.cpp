@@ -8,7 +8,7 @@
 #include <regex>
 #include <set>
 
-#include "composite/cli/program.h"
+#include "composite/cli/application.h"
 
 namespace pellucid {
 namespace {

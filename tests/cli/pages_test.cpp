@@ -3,8 +3,8 @@
 
 #include <fstream>
 
+#include "composite/cli/application.h"
 #include "composite/cli/pages/pages.h"
-#include "composite/cli/program.h"
 #include "composite/cli/suggest.h"
 #include "tests/support/program.h"
 #include "tests/support/shell.h"

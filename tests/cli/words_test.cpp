@@ -5,9 +5,9 @@
 #include <fstream>
 #include <regex>
 
+#include "composite/cli/application.h"
 #include "composite/cli/help_groups.h"
 #include "composite/cli/help_text.h"
-#include "composite/cli/program.h"
 #include "composite/cli/suggest.h"
 #include "tests/support/program.h"
 

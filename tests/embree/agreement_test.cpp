@@ -7,7 +7,7 @@
 #include "engine_bridge/embree/opaque_render.h"
 #include "engine_bridge/embree/opaque_scene.h"
 #include "engine_bridge/gl/opaque_pass.h"
-#include "tests/embree/scenes.h"
+#include "tests/embree/traced_scenes.h"
 
 namespace pellucid::test {
 namespace {

@@ -11,7 +11,7 @@
 #include "engine_bridge/embree/ray_fragments.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "engine_bridge/scene/surroundings.h"
-#include "tests/embree/scenes.h"
+#include "tests/embree/traced_scenes.h"
 
 namespace pellucid::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <map>
 
 #include "gbuffer/errors.h"
-#include "tests/embree/scenes.h"
+#include "tests/embree/traced_scenes.h"
 #include "tests/gl/builder.h"
 
 namespace pellucid::test {

@@ -1,5 +1,5 @@
 // Light and openness against closed forms.
-#include "engine_bridge/embree/lighting.h"
+#include "engine_bridge/embree/point_lighting.h"
 
 #include <gtest/gtest.h>
 

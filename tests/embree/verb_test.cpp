@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tests/embree/scenes.h"
+#include "tests/embree/traced_scenes.h"
 #include "tests/support/shots.h"
 
 namespace pellucid::test {

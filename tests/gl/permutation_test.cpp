@@ -4,8 +4,8 @@
 #include <chrono>
 #include <set>
 
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/permutation.h"
-#include "engine_bridge/gl/program.h"
 #include "shaders/weights.h"
 #include "tests/gl/builder.h"
 

@@ -132,6 +132,16 @@ TEST(Planted, TwoTypesOfOneNameAreFound) {
       0u);
 }
 
+TEST(Planted, TwoHeadersOfOneNameAreFound) {
+  const auto found = [](const char* first, const char* second) {
+    return headersNamedTwice({{first, ""}, {second, ""}}).size();
+  };
+  EXPECT_EQ(found("gbuffer/image.h", "engine_bridge/gl/image.h"), 1u);
+  EXPECT_EQ(found("gbuffer/image.h", "gbuffer/image.cpp"), 0u);
+  EXPECT_EQ(found("gbuffer/image.cpp", "engine_bridge/image.cpp"), 0u);
+  EXPECT_EQ(found("gbuffer/image.h", "gbuffer/an_image.h"), 0u);
+}
+
 TEST(Planted, CirclesAreFound) {
   const auto include = [](const char* path) { return std::string("#include \"room/") + path + "\"\n"; };
   const auto circles = [](const std::vector<SourceFile>& files) { return circlesIn("room", files).size(); };

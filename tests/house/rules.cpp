@@ -241,6 +241,17 @@ Violations circlesIn(const std::string& folder, const std::vector<SourceFile>& f
   return found;
 }
 
+Violations headersNamedTwice(const std::vector<SourceFile>& files) {
+  std::map<std::string, std::string> first;
+  Violations found;
+  for (const SourceFile& file : files) {
+    if (!file.path.ends_with(".h")) continue;
+    const auto [other, isNew] = first.emplace(file.path.substr(file.path.rfind('/') + 1), file.path);
+    if (!isNew) found.push_back(file.path + ": has the name of " + other->second);
+  }
+  return found;
+}
+
 Violations roomsWithoutReadme(const std::string& top) {
   Violations found;
   const auto isEmpty = [](const std::filesystem::path& folder) {

@@ -24,6 +24,8 @@ Violations againstSharedText(const SourceFile& file);
 // Types of headers that share a name and a namespace: a program that links both uses the wrong one, and no compiler
 // says so.
 Violations definedTwice(const std::vector<SourceFile>& files);
+// Headers that share a name: a reader asks which one is meant.
+Violations headersNamedTwice(const std::vector<SourceFile>& files);
 // Circles among the parts of a folder. A part is a header and the source of its name. It needs what either includes
 // and, where a class of its header has members that are defined in another part's source, that part too: what includes
 // the header reaches them.

@@ -57,6 +57,11 @@ TEST(House, NamesOfTypesAreTheirOwn) {
   EXPECT_TRUE(found.empty()) << told(found);
 }
 
+TEST(House, NamesOfHeadersAreTheirOwn) {
+  const Violations found = headersNamedTwice(sourceFiles());
+  EXPECT_TRUE(found.empty()) << told(found);
+}
+
 TEST(House, TheCLibraryHasNoCircles) {
   const Violations found = circlesIn("engine_bridge/c", sourceFiles());
   EXPECT_TRUE(found.empty()) << told(found);

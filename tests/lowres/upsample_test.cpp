@@ -6,7 +6,7 @@
 
 #include "composite/low_resolution.h"
 #include "composite/resolve.h"
-#include "shaders/low_resolution.h"
+#include "shaders/low_resolution_text.h"
 #include "tests/gl/builder.h"
 #include "tests/support/random.h"
 

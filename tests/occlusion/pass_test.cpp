@@ -5,8 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "composite/fold.h"
-#include "composite/occluders.h"
 #include "composite/occlusion.h"
+#include "composite/picture_occluders.h"
 #include "engine_bridge/gl/permutation.h"
 #include "tests/occlusion/leaf_stage.h"
 #include "tests/occlusion/plants_scene.h"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/permutation.h"
-#include "engine_bridge/gl/program.h"
 #include "engine_bridge/gl/transparent_pass.h"
 #include "engine_bridge/scene/gltf.h"
 #include "shaders/particle.h"

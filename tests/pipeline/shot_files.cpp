@@ -1,6 +1,6 @@
 #include "tests/pipeline/shot_files.h"
 
-#include "composite/deep/channels.h"
+#include "composite/deep/sample_channels.h"
 #include "gbuffer/deep_io.h"
 #include "tests/support/exr_shots.h"
 #include "tests/support/shots.h"

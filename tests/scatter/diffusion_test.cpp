@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "tests/scatter/scene.h"
+#include "tests/scatter/backdrop.h"
 #include "tests/support/random.h"
 
 namespace pellucid {

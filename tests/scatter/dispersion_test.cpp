@@ -8,7 +8,7 @@
 #include "composite/resolve.h"
 #include "gbuffer/planes_io.h"
 #include "tests/gl/builder.h"
-#include "tests/scatter/scene.h"
+#include "tests/scatter/backdrop.h"
 #include "tests/support/program.h"
 #include "tests/support/random.h"
 

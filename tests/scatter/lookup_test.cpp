@@ -6,7 +6,7 @@
 #include "composite/fold.h"
 #include "composite/over.h"
 #include "composite/resolve.h"
-#include "tests/scatter/scene.h"
+#include "tests/scatter/backdrop.h"
 #include "tests/support/random.h"
 
 namespace pellucid {

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "composite/pipeline/resolve_step.h"
-#include "tests/scatter/scene.h"
+#include "tests/scatter/backdrop.h"
 #include "tests/support/random.h"
 
 namespace pellucid::test {

@@ -7,7 +7,7 @@
 #include "composite/denormals.h"
 #include "composite/fold_exact.h"
 #include "composite/lookup_text.h"
-#include "tests/scatter/scene.h"
+#include "tests/scatter/backdrop.h"
 #include "tests/support/random.h"
 
 namespace pellucid::test {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "engine_bridge/scene/triangle_source.h"
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

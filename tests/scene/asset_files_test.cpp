@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "engine_bridge/scene/asset_files.h"
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

@@ -1,7 +1,7 @@
 // Real files that the project did not make, where they are present.
 #include <cmath>
 
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

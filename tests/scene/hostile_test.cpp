@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "engine_bridge/scene/uri.h"
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <numeric>
 
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

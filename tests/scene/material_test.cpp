@@ -1,5 +1,5 @@
 // Materials, their extensions, extras.pellucid and --set.
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

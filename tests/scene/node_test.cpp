@@ -3,7 +3,7 @@
 #include <set>
 
 #include "engine_bridge/scene/placed.h"
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

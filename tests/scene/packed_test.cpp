@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine_bridge/scene/mapped_file.h"
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 #include "tests/support/random.h"
 
 namespace pellucid::test {

@@ -7,7 +7,7 @@
 
 #include "engine_bridge/scene/triangle_source.h"
 #include "gbuffer/colour_space.h"
-#include "tests/scene/builder.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace pellucid::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/gl_program.h"
 #include "engine_bridge/gl/shadow_pass.h"
 #include "engine_bridge/gl/shadow_textures.h"
 #include "shaders/shader_source.h"

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "tests/stochastic/stacks.h"
+#include "tests/stochastic/sampled_stacks.h"
 
 namespace pellucid {
 namespace {

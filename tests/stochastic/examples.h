@@ -1,6 +1,6 @@
 // ST10's examples, and what its authors measured.
 #pragma once
-#include "tests/stochastic/stacks.h"
+#include "tests/stochastic/sampled_stacks.h"
 
 namespace pellucid::test {
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "composite/cli/application.h"
 #include "composite/cli/help_groups.h"
 #include "composite/cli/pages/pages.h"
-#include "composite/cli/program.h"
 
 namespace pellucid::cli {
 namespace {

@@ -1,9 +1,9 @@
 #include <sstream>
 
+#include "composite/cli/application.h"
 #include "composite/cli/help_groups.h"
 #include "composite/cli/help_text.h"
 #include "composite/cli/pages/pages.h"
-#include "composite/cli/program.h"
 
 namespace pellucid::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "samples/osg/scene.h"
+#include "samples/osg/still_life.h"
 
 #include <cmath>
 #include <fstream>

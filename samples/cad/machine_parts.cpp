@@ -1,4 +1,4 @@
-#include "samples/cad/parts.h"
+#include "samples/cad/machine_parts.h"
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>

@@ -1,4 +1,4 @@
-#include "engine_bridge/c/textures.h"
+#include "engine_bridge/c/host_textures.h"
 
 namespace pellucid::c {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine_bridge/gl/lean_lists.h"
+#include "engine_bridge/gl/lean_drawing.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "engine_bridge/gl/program.h"
+#include "engine_bridge/gl/gl_program.h"
 
 #include <stdexcept>
 

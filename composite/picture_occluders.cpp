@@ -1,4 +1,4 @@
-#include "composite/occluders.h"
+#include "composite/picture_occluders.h"
 
 #include <algorithm>
 #include <cmath>

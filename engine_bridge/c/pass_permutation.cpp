@@ -1,4 +1,4 @@
-#include "engine_bridge/c/permutation.h"
+#include "engine_bridge/c/pass_permutation.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "engine_bridge/embree/lighting.h"
+#include "engine_bridge/embree/point_lighting.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "composite/deep/channels.h"
+#include "composite/deep/sample_channels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "engine_bridge/embree/device.h"
+#include "engine_bridge/embree/embree_device.h"
 
 #include <fmt/format.h>
 
