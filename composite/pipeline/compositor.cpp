@@ -16,6 +16,7 @@
 #include "composite/pipeline/held_out_planes.h"
 #include "composite/pipeline/memory_picture.h"
 #include "composite/pipeline/method_file.h"
+#include "composite/pipeline/not_finite.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/pass_motion.h"
@@ -305,6 +306,7 @@ Result Compositor::painted(const Request& request, double holdTo) {
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
   result.dataWindow = gbuffer.data;
   result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
+  noteWhatIsNotFinite(result.picture, gbuffer, journal_);
   const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
   for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
   if (!anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);

@@ -49,6 +49,13 @@ class TexelMixer : public Mixer {
   std::optional<ChosenMethod> method_;
 };
 
+// How far off a weight is whose sums overflow where the truth does not: farther than any that does not.
+constexpr double kOverflow = 1e200;
+
+bool isFinite(const glm::dvec3& colour) {
+  return std::isfinite(colour.r) && std::isfinite(colour.g) && std::isfinite(colour.b);
+}
+
 // Over the channels, too, and without what a background that is not finite makes.
 double meanSize(const std::vector<glm::dvec3>& colours) {
   double sum = 0.0;
@@ -224,8 +231,11 @@ std::vector<glm::dvec3> DrawnProbes::differences(const shading::WeightSettings& 
   std::vector<glm::dvec3> difference(count(), glm::dvec3(0.0));
   for (std::size_t k = 0; k < passes; ++k) {
     const std::vector<glm::dvec3> got = shown(veilOf(passes_[k], weight));
-    for (std::size_t i = 0; i < count(); ++i)
-      difference[i] += static_cast<double>(passes_[k].weight[i]) * (got[i] - passes_[k].truth[i]);
+    for (std::size_t i = 0; i < count(); ++i) {
+      const glm::dvec3 off = got[i] - passes_[k].truth[i];
+      const bool overflows = !isFinite(off) && isFinite(passes_[k].truth[i]);
+      difference[i] += static_cast<double>(passes_[k].weight[i]) * (overflows ? glm::dvec3(kOverflow) : off);
+    }
   }
   return difference;
 }

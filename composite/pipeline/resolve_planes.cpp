@@ -10,6 +10,7 @@
 #include "composite/deep/placed_sums.h"
 #include "composite/edges.h"
 #include "composite/picture_occluders.h"
+#include "composite/pipeline/not_finite.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
 #include "composite/pipeline/resolve_step.h"
@@ -234,6 +235,7 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   result.veil = journal.time("average", [&] { return mean.finish(); });
   if (edges) edges->finish(result.veil);
   result.picture = journal.time("compose", [&] { return compose(result.veil, gbuffer); });
+  noteWhatIsNotFinite(result.picture, gbuffer, journal);
   for (std::size_t i = 0; i < relit.size(); ++i)
     if (relit[i].a > 0.0f) result.picture.touched[i] = 1;
   result.layers = veilLayers(request.layers, result.veil);

@@ -1,0 +1,179 @@
+// Every method and tier over the whole range of what layers may be: finite, as near to a double-precision sum as it
+// says, monotone, and the same in millimetres and kilometres. PELLUCID_EXTREMES=N tries N seeds: ./dev campaign
+// extremes N.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "gbuffer/opaque_io.h"
+#include "tests/extremes/extreme_shot.h"
+#include "tests/support/program.h"
+
+namespace pellucid::test {
+namespace {
+
+// What a method says of itself.
+//   single  most by which a pixel of one layer is off, as a part of the light that enters it; negative: it approximates
+//           those too
+//   all     the same of any pixel; negative: it approximates them
+//   least   light that is lost where a weight makes it smaller than a float is; the weights are at least 2^-86
+struct Row {
+  const char* method;
+  std::vector<std::string> flags;
+  double single, all, least;
+  bool isMonotone = true;
+};
+
+constexpr double kRounding = 3e-7;     // of the few float steps from a double sum to the file
+constexpr double kSumRounding = 2e-6;  // of float sums, their quotient and their product
+constexpr double kTiny = 1e-30, kWeighed = 1e-12;
+
+std::vector<Row> rows() {
+  const auto sums = [](std::vector<std::string> flags, double least) {
+    return Row{"phenomenological", std::move(flags), kSumRounding, -1.0, least};
+  };
+  return {{"over", {}, kRounding, kRounding, kTiny},
+          {"over", {"--precision", "exact"}, kRounding, kRounding, kTiny},
+          {"mlab:4", {}, kRounding, kRounding, kTiny},
+          sums({}, kWeighed),
+          sums({"--precision", "exact"}, kWeighed),
+          sums({"--weight", "uniform"}, kTiny),
+          sums({"--weight", "eq5"}, kWeighed),
+          sums({"--weight", "eq7"}, kWeighed),
+          sums({"--weight", "eq10z"}, kWeighed),
+          sums({"--weight", "linear"}, kWeighed),
+          {"phenomenological", {"--precision", "published"}, -1.0, -1.0, kWeighed, false},
+          {"blended", {}, kSumRounding, -1.0, kTiny},
+          {"average", {}, kSumRounding, -1.0, kTiny},
+          {"sum", {}, kRounding, -1.0, kTiny},
+          {"front+tail", {}, kRounding, -1.0, kTiny},
+          {"unsorted", {}, kRounding, -1.0, kTiny},
+          {"wavelet:2", {}, kRounding, -1.0, kTiny},
+          {"moments:4", {}, kRounding, -1.0, kTiny},
+          {"moments:8", {}, kRounding, -1.0, kTiny},
+          {"listing3", {}, -1.0, -1.0, kTiny, false},
+          {"listing4", {}, -1.0, -1.0, kTiny, false},
+          {"monochrome", {}, -1.0, -1.0, kTiny, false},
+          {"stochastic", {}, -1.0, -1.0, kTiny, false},
+          {"stochastic:basic", {}, -1.0, -1.0, kTiny, false}};
+}
+
+std::string nameOf(const Row& row) {
+  std::string name = row.method;
+  for (const std::string& flag : row.flags) name += " " + flag;
+  return name;
+}
+
+struct Figures {
+  std::size_t notFinite = 0, falls = 0, changed = 0;
+  double single = 0.0, all = 0.0, units = 0.0;
+  void add(const Figures& other) {
+    notFinite += other.notFinite;
+    falls += other.falls;
+    changed += other.changed;
+    single = std::max(single, other.single);
+    all = std::max(all, other.all);
+    units = std::max(units, other.units);
+  }
+};
+
+Image<glm::vec4> painted(const ExtremeShot& shot, const Row& row, const std::vector<std::string>& more) {
+  const std::string output = shot.picture + ".out.exr";
+  std::vector<std::string> arguments{"composite", shot.picture, shot.layers, "-o",      output,
+                                     "--aa",      "1",          "--method",  row.method};
+  arguments.insert(arguments.end(), row.flags.begin(), row.flags.end());
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Ended ended = runProgram(arguments);
+  EXPECT_EQ(ended.code, 0) << nameOf(row) << ": " << ended.err;
+  return ended.code == 0 ? readOpaque(output, {}).gbuffer.beauty : Image<glm::vec4>();
+}
+
+// What enters the pixel: the largest light among layers and background.
+double lightOf(const ExtremePixel& pixel, std::size_t channel) {
+  double most = std::abs(pixel.background[channel]);
+  for (const reference::Layer& layer : pixel.layers) most = std::max(most, layer.reflected[channel]);
+  return most;
+}
+
+void judgePixel(const ExtremePixel& pixel, const glm::vec4& got, const Row& row, Figures& figures) {
+  const reference::Rgb truth = reference::sortedOver(pixel.layers, pixel.background);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto value = static_cast<double>(got[static_cast<int>(c)]);
+    const auto background = static_cast<float>(pixel.background[c]);
+    if (pixel.layers.empty()) {
+      figures.changed += std::memcmp(&got[static_cast<int>(c)], &background, sizeof background) != 0;
+      continue;
+    }
+    if (!std::isfinite(value)) {
+      ++figures.notFinite;
+      continue;
+    }
+    const double off = std::max(std::abs(value - truth[c]) - row.least, 0.0) / std::max(lightOf(pixel, c), kTiny);
+    figures.all = std::max(figures.all, off);
+    if (pixel.layers.size() == 1) figures.single = std::max(figures.single, off);
+  }
+}
+
+// How often a ladder goes the wrong way, by more than roundings.
+std::size_t fallsIn(const ExtremeShot& shot, const Ladder& ladder, const Image<glm::vec4>& got, double least) {
+  const bool rises = ladder.varied == Quantity::radiance || ladder.varied == Quantity::background;
+  std::size_t falls = 0;
+  for (std::size_t k = 1; k < ladder.count; ++k) {
+    const std::size_t i = ladder.first + k;
+    for (int c = 0; c < 3; ++c) {
+      const double step = static_cast<double>(got[i][c]) - static_cast<double>(got[i - 1][c]);
+      const double rounding = kSumRounding * lightOf(shot.pixels[i], static_cast<std::size_t>(c)) + least;
+      falls += rises ? step < -rounding : step > rounding;
+    }
+  }
+  return falls;
+}
+
+Figures judge(const ExtremeShot& shot, const Row& row) {
+  Figures figures;
+  const Image<glm::vec4> metres = painted(shot, row, {});
+  const Image<glm::vec4> millimetres = painted(shot, row, {"--unit", "0.001"});
+  if (metres.empty() || millimetres.empty()) return {1, 0, 0, 0.0, 0.0, 0.0};
+  for (std::size_t i = 0; i < shot.pixels.size(); ++i) {
+    judgePixel(shot.pixels[i], metres[i], row, figures);
+    for (int c = 0; c < 3; ++c)
+      figures.units =
+          std::max(figures.units, std::abs(static_cast<double>(metres[i][c]) - static_cast<double>(millimetres[i][c])) /
+                                      std::max(lightOf(shot.pixels[i], static_cast<std::size_t>(c)), kTiny));
+  }
+  for (const Ladder& ladder : shot.ladders) figures.falls += fallsIn(shot, ladder, metres, row.least);
+  return figures;
+}
+
+int seeds() {
+  const char* asked = std::getenv("PELLUCID_EXTREMES");
+  return asked ? std::max(1, std::atoi(asked)) : 1;
+}
+
+TEST(Extremes, EveryMethodAndTierOverTheWholeRange) {
+  const std::string folder = freshFolder("extremes");
+  std::vector<ExtremeShot> shots;
+  for (int seed = 1; seed <= seeds(); ++seed) {
+    const std::string of = freshFolder("extremes-" + std::to_string(seed));
+    shots.push_back(writeExtremeShot(of, static_cast<std::uint64_t>(seed)));
+  }
+  std::printf("%zu pixels each, %zu seeds\n%-44s %10s %9s %9s %6s %8s %9s\n", shots[0].pixels.size(), shots.size(),
+              "method", "not finite", "one layer", "all", "falls", "changed", "1/1000");
+  for (const Row& row : rows()) {
+    Figures worst;
+    for (const ExtremeShot& shot : shots) worst.add(judge(shot, row));
+    std::printf("%-44s %10zu %9.1e %9.1e %6zu %8zu %9.1e\n", nameOf(row).c_str(), worst.notFinite, worst.single,
+                worst.all, worst.falls, worst.changed, worst.units);
+    EXPECT_EQ(worst.notFinite, 0u) << nameOf(row);
+    EXPECT_EQ(worst.changed, 0u) << nameOf(row);
+    if (row.single >= 0.0) EXPECT_LE(worst.single, row.single) << nameOf(row);
+    if (row.all >= 0.0) EXPECT_LE(worst.all, row.all) << nameOf(row);
+    if (row.isMonotone) EXPECT_EQ(worst.falls, 0u) << nameOf(row);
+  }
+}
+
+}  // namespace
+}  // namespace pellucid::test
