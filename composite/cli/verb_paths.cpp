@@ -24,7 +24,7 @@ struct InputFlag {
 constexpr InputFlag kInputs[] = {
     {"--depth", true},        {"--aov", true},          {"--ocio", true},        {"--environment", true},
     {"--fog", true},          {"--fog-grid", true},     {"--layer-depth", true}, {"--weight-from", false},
-    {"--method-from", false}, {"--held-out-by", false},
+    {"--method-from", false}, {"--held-out-by", false}, {"--scene", true},
 };
 
 std::optional<OutputKind> writtenBy(const std::string& verb, const std::string& flag) {
