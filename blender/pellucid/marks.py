@@ -1,0 +1,62 @@
+"""What is transparent, and what is shown to whom."""
+
+import contextlib
+
+from . import compat
+from .trouble import Trouble
+
+
+def marked(scene):
+    """The objects that are marked, or lie in a marked collection, and would be rendered. Raises Trouble for none."""
+    names = {each.name for collection in scene.collection.children_recursive if collection.pellucid_transparent
+             for each in collection.all_objects}
+    found = [each for each in scene.objects if each.pellucid_transparent or each.name in names]
+    if not found:
+        raise Trouble("No object of the scene is marked as transparent: mark some in the Pellucid panel of the render "
+                      "properties.")
+    shown = [each for each in found if not each.hide_render]
+    if not shown:
+        raise Trouble(f"All {len(found)} marked objects are hidden from renders: show those to be composited.")
+    return shown
+
+
+@contextlib.contextmanager
+def only(scene, shown):
+    """Hides from renders all objects that `shown` refuses, while it lasts."""
+    hidden = [each for each in scene.objects if not each.hide_render and not shown(each)]
+    for each in hidden:
+        each.hide_render = True
+    try:
+        yield
+    finally:
+        for each in hidden:
+            each.hide_render = False
+
+
+def _is_closed(mesh):
+    """Every edge has two faces."""
+    faces = [0] * len(mesh.edges)
+    for loop in mesh.loops:
+        faces[loop.edge_index] += 1
+    return bool(faces) and all(count == 2 for count in faces)
+
+
+def _transmits(material):
+    if not material or not material.node_tree:
+        return False
+    for node in material.node_tree.nodes:
+        if node.type == "BSDF_PRINCIPLED":
+            socket = compat.transmission_of(node)
+            if socket.is_linked or socket.default_value > 0:
+                return True
+    return False
+
+
+def solid_materials(objects):
+    """Names of materials with transmission, all of whose marked meshes are closed."""
+    closed, open_ = set(), set()
+    for each in objects:
+        glass = [slot.material.name for slot in each.material_slots if _transmits(slot.material)]
+        if glass and each.type == "MESH":
+            (closed if _is_closed(each.data) else open_).update(glass)
+    return sorted(closed - open_)
