@@ -6,11 +6,17 @@ from . import compat
 from .trouble import Trouble
 
 
-def marked(scene):
-    """The objects that are marked, or lie in a marked collection, and would be rendered. Raises Trouble for none."""
-    names = {each.name for collection in scene.collection.children_recursive if collection.pellucid_transparent
+def names(scene):
+    """Of the objects that are marked, or lie in a marked collection."""
+    found = {each.name for collection in scene.collection.children_recursive if collection.pellucid_transparent
              for each in collection.all_objects}
-    found = [each for each in scene.objects if each.pellucid_transparent or each.name in names]
+    return found | {each.name for each in scene.objects if each.pellucid_transparent}
+
+
+def marked(scene):
+    """The marked objects that would be rendered. Raises Trouble for none."""
+    wanted = names(scene)
+    found = [each for each in scene.objects if each.name in wanted]
     if not found:
         raise Trouble("No object of the scene is marked as transparent: mark some in the Pellucid panel of the render "
                       "properties.")

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import settings
+from . import marks, settings
 
 
 class PELLUCID_PT_render(bpy.types.Panel):
@@ -35,5 +35,5 @@ class PELLUCID_PT_render(bpy.types.Panel):
         row.operator("pellucid.mark", text="Unmark selected").transparent = False
         if context.collection and context.collection != context.scene.collection:
             layout.prop(context.collection, "pellucid_transparent", text=f"Collection {context.collection.name}")
-        count = sum(each.pellucid_transparent for each in context.scene.objects)
-        layout.label(text=f"{count} objects are marked by themselves")
+        names = marks.names(context.scene)
+        layout.label(text=f"Marked: {len(names)} of {len(context.scene.objects)} objects")

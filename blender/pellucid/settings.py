@@ -24,7 +24,8 @@ def _methods(_self, _context, typed):
 
 def _widget(name):
     row = flags.row(name)
-    common = {"name": name.replace("-", " ").capitalize(), "description": row["help"].rstrip(".")}
+    label = name.upper() if len(name) == 2 else name.replace("-", " ").capitalize()
+    common = {"name": label, "description": row["help"].rstrip(".")}
     if row["choices"]:
         items = [(choice, choice, "") for choice in row["choices"]]
         return bpy.props.EnumProperty(items=items, default=row["default"], **common)

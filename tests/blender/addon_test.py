@@ -3,6 +3,7 @@
 import json
 import os
 import stat
+import types
 
 import bpy
 from blender_stage import FOLDER, PROGRAM, BlenderTest, main, program, small_scene, switch_on, use_program
@@ -64,6 +65,43 @@ class Registering(BlenderTest):
             self.assertIn(" ".join(each.description.split()), told)
 
 
+    def test_the_panel_shows_what_there_is(self):
+        scene = small_scene()
+        panel, layout = bpy.types.PELLUCID_PT_render, Layout()
+        panel.draw(types.SimpleNamespace(layout=layout, _draw_marks=panel._draw_marks), bpy.context)
+        settings = {each.identifier for each in scene.pellucid.bl_rna.properties} - {"rna_type", "name"}
+        self.assertEqual(settings - layout.shown, set())
+        self.assertIn("pellucid.composite", layout.shown)
+
+
+class Layout:
+    """Stands for Blender's, which there is only with a window: notes what is shown, all of which must exist."""
+
+    def __init__(self):
+        self.shown = set()
+
+    def row(self, **_words):
+        """Part of the same."""
+        return self
+
+    column = row
+
+    def label(self, **_words):
+        """A text."""
+
+    def prop(self, owner, name, **_words):
+        """A widget."""
+        getattr(owner, name)
+        self.shown.add(name)
+
+    def operator(self, name, **_words):
+        """A button."""
+        module, function = name.split(".")
+        getattr(getattr(bpy.ops, module), function).get_rna_type()
+        self.shown.add(name)
+        return types.SimpleNamespace()
+
+
 class Compositing(BlenderTest):
     """The button."""
 
@@ -83,7 +121,9 @@ class Compositing(BlenderTest):
         self.assertEqual(types["ViewLayer.Combined.R"], "float")
         self.assertEqual(types["ViewLayer.Depth.Z"], "float")
         self.assertEqual(report["preset"]["name"], "blender")
-        self.assertEqual(bpy.data.images["Pellucid"].filepath, picture)
+        image = bpy.data.images["Pellucid"]
+        len(image.pixels)  # Blender reads it when it is first asked for
+        self.assertEqual((image.filepath, image.type), (picture, "MULTILAYER"))
 
     def test_the_glb_holds_what_is_marked_where_it_is(self):
         self.composite()
