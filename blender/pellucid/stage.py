@@ -68,6 +68,10 @@ def camera_of(scene):
     if camera.data.shift_x or camera.data.shift_y:
         raise Trouble(f"The camera {camera.name} is shifted by {camera.data.shift_x:g}, {camera.data.shift_y:g}: "
                       "expected 0, 0, because glTF has no shifted cameras.")
+    across, down = scene.render.pixel_aspect_x, scene.render.pixel_aspect_y
+    if across != down:
+        raise Trouble(f"Pixels are {across:g} to {down:g}: expected square ones, because the EXR that Blender writes "
+                      "does not say.")
     return camera
 
 

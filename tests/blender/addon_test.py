@@ -225,6 +225,10 @@ class Trouble(BlenderTest):
         self.scene.camera.data.shift_x = 0.1
         self.assertIn("shifted by 0.1, 0: expected 0, 0, because glTF has no shifted cameras", self.refused())
 
+    def test_pixels_that_are_not_square(self):
+        self.scene.render.pixel_aspect_x = 2
+        self.assertIn("Pixels are 2 to 1: expected square ones", self.refused())
+
     def test_no_command_line(self):
         self.chosen.more = "--set 'a"
         self.assertIn("which is no command line", self.refused())
