@@ -128,6 +128,7 @@ const std::vector<HelpRow> kRows{
     {"--progress", kRunning, ""},
     {"--log-json", kRunning, ""},
     {"--explain", kRunning, ""},
+    {"--explain-page", kRunning, "FILE.html"},
     {"--stats", kRunning, ""},
     {"--json", kRunning, ""},
     {"--print", kRunning, ""},

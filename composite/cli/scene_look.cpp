@@ -11,6 +11,8 @@
 namespace pellucid::cli {
 namespace {
 
+constexpr std::size_t kMostNodes = 500;  // that a page lists and draws
+
 // A node's corners, in the world and before the eye.
 struct NodeReach {
   glm::dvec3 least{std::numeric_limits<double>::infinity()}, most = -least;
@@ -107,7 +109,11 @@ SceneLook lookAt(ScenePreview& preview) {
   const Shot& shot = preview.compositor->shot();
   SceneLook look;
   PageTable table{"Scene", {"node", "material", "", "triangles", "distance", "pixels"}, {}};
-  for (const auto& [name, node] : reachOfNodes(shot.scene, shot.camera, shot.opaque.gbuffer.display)) {
+  const std::map<std::string, NodeReach> nodes = reachOfNodes(shot.scene, shot.camera, shot.opaque.gbuffer.display);
+  if (nodes.size() > kMostNodes)
+    look.lines.push_back(fmt::format("Scene: the first {} of {} nodes are shown.", kMostNodes, nodes.size()));
+  for (const auto& [name, node] : nodes) {
+    if (look.parts.size() == kMostNodes) break;
     look.parts.push_back({name, node.least, node.most, node.transparent});
     table.rows.push_back(rowOf(name, node));
   }

@@ -14,7 +14,7 @@ struct OutputFlag {
 constexpr OutputFlag kOutputs[] = {
     {"--output", "study", OutputKind::folder}, {"--output", "", OutputKind::exr},
     {"--shadow-views", "", OutputKind::exr},   {"--html", "", OutputKind::page},
-    {"--preview", "", OutputKind::image},
+    {"--preview", "", OutputKind::image},      {"--explain-page", "", OutputKind::page},
 };
 
 struct InputFlag {

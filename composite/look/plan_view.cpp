@@ -12,8 +12,8 @@ namespace pellucid {
 namespace {
 
 constexpr double kWidth = 720, kHeight = 480, kMargin = 24;
-constexpr int kDotsAcross = 96;         // of the picture
-constexpr std::size_t kMostNames = 24;  // more would hide one another
+constexpr int kDotsAcross = 96;          // of the picture
+constexpr glm::dvec2 kNameSize{60, 12};  // names nearer to one another than this would overlap
 
 struct Dot {
   glm::dvec2 at;
@@ -98,7 +98,12 @@ std::string cameraSvg(const GBuffer& gbuffer, const Camera& camera, const Frame&
 
 std::string partsSvg(const std::vector<ScenePart>& parts, const Frame& frame) {
   std::string svg;
-  std::size_t named = 0;
+  std::vector<glm::dvec2> names;
+  const auto hasRoom = [&](const glm::dvec2& at) {
+    return std::none_of(names.begin(), names.end(), [&](const glm::dvec2& other) {
+      return std::abs(at.x - other.x) < kNameSize.x && std::abs(at.y - other.y) < kNameSize.y;
+    });
+  };
   for (const ScenePart& part : parts) {
     const glm::dvec2 from = frame.place(fromAbove(part.least)), to = frame.place(fromAbove(part.most));
     svg += fmt::format(
@@ -106,9 +111,10 @@ std::string partsSvg(const std::vector<ScenePart>& parts, const Frame& frame) {
         "stroke=\"{}\"><title>{}</title></rect>",
         from.x, from.y, std::max(to.x - from.x, 1.0), std::max(to.y - from.y, 1.0), part.transparent ? "#2a7" : "none",
         part.transparent ? "#2a7" : "#999", escapedHtml(part.name));
-    if (part.transparent && named < kMostNames && ++named)
-      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"#175\">{}</text>", from.x, from.y - 2,
-                         escapedHtml(part.name));
+    if (!part.transparent || !hasRoom(from)) continue;
+    names.push_back(from);
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"#175\">{}</text>", from.x, from.y - 2,
+                       escapedHtml(part.name));
   }
   return svg;
 }

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "composite/look/depth_histogram.h"
+#include "composite/look/flow_diagram.h"
 #include "composite/look/plan_view.h"
 #include "tests/support/exr_shots.h"
 #include "tests/support/program.h"
@@ -126,7 +128,7 @@ TEST_F(View, InspectRefusesWhatThePageAloneReads) {
       {{"inspect", "opaque.exr", "--html", "p.html", "--camera", "fit"}, 2, "--camera: found it without --scene"},
       {{"inspect", "opaque.exr", "--html", "p.png"}, 2, ".html"},
       {{"inspect", "--devices", "--html", "p.html"}, 2, "--html and --devices"},
-      {{"inspect", "opaque.exr", "--html", "p.html", "--scene", "a.glb"}, 3, "a.glb"},
+      {{"inspect", "opaque.exr", "--html", "p.html", "--scene", "a.glb"}, 3, "composite says: a.glb"},
   };
   for (const Row& row : rows) {
     const Ended ended = run(row.words);
@@ -134,6 +136,35 @@ TEST_F(View, InspectRefusesWhatThePageAloneReads) {
     EXPECT_NE(ended.err.find(row.sentence), std::string::npos) << ended.err << "\n  lacks " << row.sentence;
   }
   EXPECT_FALSE(std::filesystem::exists(options.folder + "/p.html"));
+}
+
+TEST_F(View, ThePlanIsADiagram) {
+  writeOpaque(options.folder + "/opaque.exr");
+  writeGlb(options.folder + "/scene.glb", {Quad{{-.5f, -.5f, -3}, {1, 0, 0}, {0, 1, 0}, unlit(1, 0, 0, .5f)}});
+  std::vector<std::string> words{"composite", "opaque.exr", "scene.glb",      "-o",       "out.exr",
+                                 "--camera",  "fit",        "--explain-page", "plan.html"};
+  const Ended ended = run(words);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(filesIn(options.folder), (std::vector<std::string>{"opaque.exr", "plan.html", "scene.glb", "tmp"}))
+      << "nothing is drawn";
+  const std::string page = slurp(options.folder + "/plan.html");
+  std::istringstream lines(ended.out);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_NE(page.find(line.substr(0, line.find(' '))), std::string::npos) << line;
+  for (const char* expected : {"class=\"flow\"", ">Transparent things<", "scene.glb<", ">Passes<", "out.exr<"})
+    EXPECT_NE(page.find(expected), std::string::npos) << expected;
+  words.back() = "plan.png";
+  EXPECT_EQ(run(words).code, 2);
+}
+
+TEST(FlowSvg, EveryStepHasAnArrowFromWhatIsBeforeIt) {
+  const std::string svg = flowSvg({{"a", {"one"}}, {"b", {std::string(300, 'x') + " y"}}}, {{"c", {}}, {"d & e", {}}});
+  std::size_t arrows = 0, boxes = 0;
+  for (auto at = svg.find("marker-end"); at != std::string::npos; at = svg.find("marker-end", at + 1)) ++arrows;
+  for (auto at = svg.find("<rect"); at != std::string::npos; at = svg.find("<rect", at + 1)) ++boxes;
+  EXPECT_EQ(boxes, 4u);
+  EXPECT_EQ(arrows, 3u) << "two sources to c, c to d";
+  EXPECT_NE(svg.find("d &amp; e"), std::string::npos);
 }
 
 TEST(DepthBins, AreOfEqualRatio) {
