@@ -128,7 +128,7 @@ TEST_F(View, InspectRefusesWhatThePageAloneReads) {
       {{"inspect", "opaque.exr", "--html", "p.html", "--camera", "fit"}, 2, "--camera: found it without --scene"},
       {{"inspect", "opaque.exr", "--html", "p.png"}, 2, ".html"},
       {{"inspect", "--devices", "--html", "p.html"}, 2, "--html and --devices"},
-      {{"inspect", "opaque.exr", "--html", "p.html", "--scene", "a.glb"}, 3, "composite says: a.glb"},
+      {{"inspect", "opaque.exr", "--html", "p.html", "--scene", "a.glb"}, 3, "composite says: glTF scene: a.glb"},
   };
   for (const Row& row : rows) {
     const Ended ended = run(row.words);
