@@ -59,29 +59,35 @@ class PELLUCID_OT_composite(bpy.types.Operator):
         chosen = scene.pellucid
         transparent = marks.marked(scene)
         stage.camera_of(scene)
-        words = settings.words(chosen)
         folder = _folder(chosen.folder)
-        executable = preferences.program(context)
-        notes = program.check(executable)
         number = ".####" if chosen.animation else ""
         opaque, output = (os.path.join(folder, f"{name}{number}.exr") for name in ("opaque", "composited"))
         scenes = os.path.join(folder, "transparent.glb")
+        frames = (scene.frame_start, scene.frame_end) if chosen.animation else None
+        flags, notes = self._flags(context, transparent)
+        executable = preferences.program(context)
+        notes += program.check(executable, flags, output)
         first = scene.frame_start if chosen.animation else scene.frame_current
         if chosen.render_again or not (result.exists(result.file_of(opaque, first)) and result.exists(scenes)):
             stage.export_transparent(scene, scenes, transparent, chosen.animation)
             stage.render_opaque(scene, context.view_layer, opaque, transparent, chosen.animation)
-        frames = (scene.frame_start, scene.frame_end) if chosen.animation else None
-        more, taken = facts.words(scene, context.view_layer, words)
-        words += more + self._frames(scene, frames)
-        if chosen.solid:
-            for name in marks.solid_materials(transparent):
-                words += ["--set", f"{name}.thin=false"]
-        notes += taken + program.run(executable,
-                                     ["composite", opaque, scenes, "--output", output, "--log-json", *words])
+        notes += program.run(executable, ["composite", opaque, scenes, "--output", output, "--log-json", *flags,
+                                          *self._frames(scene, frames)])
         image = result.show(result.file_of(output, first), frames)
         if chosen.compositor:
             result.into_compositor(scene, image, frames)
         return notes + [f"Composited into {output}."]
+
+    @staticmethod
+    def _flags(context, transparent):
+        """What the panel says, and the scene; with notes. Raises Trouble."""
+        words = settings.words(context.scene.pellucid)
+        more, notes = facts.words(context.scene, context.view_layer, words)
+        words += more
+        if context.scene.pellucid.solid:
+            for name in marks.solid_materials(transparent):
+                words += ["--set", f"{name}.thin=false"]
+        return words, notes
 
     @staticmethod
     def _frames(scene, frames):

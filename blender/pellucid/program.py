@@ -1,10 +1,13 @@
 """Runs the program, and understands what it says."""
 
 import json
+import os
 import subprocess
 
 from . import flags
 from .trouble import Trouble
+
+_REFUSED = 2  # the exit code of flags that cannot be honoured
 
 
 def _messages(text):
@@ -26,9 +29,16 @@ def _ending(code):
     return f"Exit code {code}: {meaning}" if meaning else f"Exit code {code}, which pellucid does not use."
 
 
-def check(program):
-    """Raises Trouble where it cannot be run, before anything is rendered for it. Returns notes."""
-    found = _run(program, ["--version"]).stdout.strip()
+def check(program, words, output):
+    """Raises Trouble where it cannot be run or refuses the flags, before anything is rendered for it. Returns notes.
+
+    What contradicts itself is refused before a file is opened, so that files which are not there do for this.
+    """
+    found = _told(_ended(program, ["--version"])).stdout.strip()
+    missing = [os.path.join(os.path.dirname(output), name) for name in ("not-yet.exr", "not-yet.glb")]
+    refusal = _ended(program, ["composite", *missing, "--output", output.replace("####", "0"), "--log-json", *words])
+    if refusal.returncode == _REFUSED:
+        _told(refusal)
     if found == flags.VERSION:
         return []
     return [f"{program} says that it is {found[:40]!r}; the add-on was packed for {flags.VERSION}."]
@@ -36,19 +46,24 @@ def check(program):
 
 def run(program, words):
     """Runs it to its end. Returns the notes it gave; raises Trouble with its error and what its exit code means."""
-    return [sentence for level, sentence in _messages(_run(program, words).stderr) if level != "error"]
+    return [sentence for level, sentence in _messages(_told(_ended(program, words)).stderr) if level != "error"]
 
 
-def _run(program, words):
+def _ended(program, words):
     try:
-        ended = subprocess.run([program, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                               encoding="utf-8", errors="replace", check=False)
+        return subprocess.run([program, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              encoding="utf-8", errors="replace", check=False)
     except OSError as error:
         raise Trouble(f"{program}: cannot be run: {error.strerror}; expected the program pellucid, whose place the "
                       "preferences of this add-on name.") from error
+
+
+def _told(ended):
+    """The same where it ended well; else raises Trouble."""
     if ended.returncode != 0:
         told = list(_messages(ended.stderr))
         errors = [sentence for level, sentence in told if level == "error"]
-        said = ". ".join(errors or [sentence for _, sentence in told[-1:]] or [f"{program} failed without a word"])
+        last = [sentence for _, sentence in told[-1:]] or [f"{ended.args[0]} failed without a word"]
+        said = ". ".join(errors or last)
         raise Trouble(f"{said.rstrip('.')}. {_ending(ended.returncode)}")
     return ended

@@ -244,7 +244,9 @@ class Trouble(BlenderTest):
 
     def test_the_program_refuses(self):
         self.chosen.flag_method, self.chosen.flag_precision = "average", "published"
+        self.chosen.folder = os.path.join(FOLDER, "refused")
         sentence = self.refused()
+        self.assertEqual(os.listdir(self.chosen.folder), [], "nothing is rendered for it")
         self.assertIn("--precision: found published", sentence)
         self.assertIn("Exit code 2: A verb or a flag is unknown, malformed or cannot be honoured.", sentence)
 
