@@ -5,8 +5,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "composite/cli/file_page.h"
 #include "composite/cli/messages.h"
@@ -35,6 +37,13 @@ fs::path temporaryFolder() {
   return folder;
 }
 
+// By its name, or by how OpenEXR begins its files.
+bool isExr(const std::string& path) {
+  char start[4] = {};
+  std::ifstream(path, std::ios::binary).read(start, sizeof start);
+  return isExrName(path) || std::string_view(start, sizeof start) == "\x76\x2f\x31\x01";
+}
+
 // What a viewer can show of it: a page in place of an EXR, the page of a study in place of its folder.
 fs::path shownFile(const ViewFlags& flags) {
   std::error_code failure;
@@ -46,7 +55,7 @@ fs::path shownFile(const ViewFlags& flags) {
       throw InputError(flags.file + ": found a folder without study.html, expected a file or the folder of a study");
     return fs::absolute(page);
   }
-  if (!isExrName(flags.file)) return fs::absolute(flags.file);
+  if (!isExr(flags.file)) return fs::absolute(flags.file);
   const nlohmann::json report = inspectExr(flags.file, flags.read.options());
   const fs::path page = temporaryFolder() / fs::path(flags.file).filename().replace_extension(".html");
   try {

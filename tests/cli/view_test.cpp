@@ -48,6 +48,8 @@ TEST_F(View, AnExrIsAPageOfItsLayers) {
   const std::string path = ended.out.substr(0, ended.out.find('\n'));
   EXPECT_EQ(std::filesystem::path(path).filename(), "opaque.html");
   EXPECT_EQ(path.rfind(options.folder + "/tmp/pellucid-view-", 0), 0u) << path;
+  std::filesystem::copy(options.folder + "/opaque.exr", options.folder + "/opaque.tmp");
+  EXPECT_NE(run({"view", "opaque.tmp", "--print"}).out.find("/opaque.html"), std::string::npos) << "by its content";
   const std::string page = slurp(path);
   for (const char* expected :
        {"<title>opaque.exr</title>", "<h2>Channels</h2>", "Pixels by depth", "\"pictures\":[", "beauty: R G B"})
