@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "engine_bridge/scene/triangle_source.h"
+#include "engine_bridge/scene/corners.h"
 
 namespace pellucid::cli {
 namespace {
@@ -34,10 +34,7 @@ struct NodeReach {
 };
 
 std::map<std::string, NodeReach> reachOfNodes(const Scene& scene, const Camera& camera, const Window& display) {
-  constexpr std::size_t kBatch = 1024;
   std::map<std::string, NodeReach> nodes;
-  VertexPlaces places;
-  TriangleBatch batch;
   for (const Instance& instance : scene.instances) {
     const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
     const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
@@ -45,14 +42,12 @@ std::map<std::string, NodeReach> reachOfNodes(const Scene& scene, const Camera& 
     node.transparent = node.transparent || material.transparent();
     if (node.material.empty() || material.transparent()) node.material = material.name;
     node.triangles += primitive.triangles();
-    for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
-      readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
-      for (const Vertex& vertex : batch.vertices) {
-        const glm::dvec3 world(instance.worldFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0));
-        node.add(world, project(camera, display, world));
-      }
-    }
   }
+  forEachCorner(
+      scene, glm::dmat4(1.0), [](const Material&) { return true; },
+      [&](const Instance& instance, const glm::dvec3& world) {
+        nodes[instance.node].add(world, project(camera, display, world));
+      });
   std::erase_if(nodes, [](const auto& entry) { return entry.second.triangles == 0; });
   return nodes;
 }
