@@ -13,14 +13,27 @@ def names(scene):
     return found | {each.name for each in scene.objects if each.pellucid_transparent}
 
 
-def marked(scene):
+def rendered(view_layer):
+    """Names of the objects that a render of the view layer would show."""
+    def walk(layer):
+        if layer.exclude or layer.collection.hide_render:
+            return
+        yield from (each.name for each in layer.collection.objects if not each.hide_render)
+        for child in layer.children:
+            yield from walk(child)
+
+    return set(walk(view_layer.layer_collection))
+
+
+def marked(scene, view_layer):
     """The marked objects that would be rendered. Raises Trouble for none."""
     wanted = names(scene)
     found = [each for each in scene.objects if each.name in wanted]
     if not found:
         raise Trouble("No object of the scene is marked as transparent: mark some in the Pellucid panel of the render "
                       "properties.")
-    shown = [each for each in found if not each.hide_render]
+    seen = rendered(view_layer)
+    shown = [each for each in found if each.name in seen]
     if not shown:
         raise Trouble(f"All {len(found)} marked objects are hidden from renders: show those to be composited.")
     return shown

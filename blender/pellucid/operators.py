@@ -57,7 +57,7 @@ class PELLUCID_OT_composite(bpy.types.Operator):
     def _composite(self, context):
         scene = context.scene
         chosen = scene.pellucid
-        transparent = marks.marked(scene)
+        transparent = marks.marked(scene, context.view_layer)
         stage.camera_of(scene)
         folder = _folder(chosen.folder)
         number = ".####" if chosen.animation else ""
@@ -69,7 +69,7 @@ class PELLUCID_OT_composite(bpy.types.Operator):
         notes += program.check(executable, flags, output)
         first = scene.frame_start if chosen.animation else scene.frame_current
         if chosen.render_again or not (result.exists(result.file_of(opaque, first)) and result.exists(scenes)):
-            stage.export_transparent(scene, scenes, transparent, chosen.animation)
+            stage.export_transparent(scene, context.view_layer, scenes, transparent, chosen.animation)
             stage.render_opaque(scene, context.view_layer, opaque, transparent, chosen.animation)
         notes += program.run(executable, ["composite", opaque, scenes, "--output", output, "--log-json", *flags,
                                           *self._frames(scene, frames)])

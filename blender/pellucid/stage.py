@@ -8,8 +8,6 @@ import bpy
 from . import compat, marks
 from .trouble import Trouble
 
-_WITH_THE_GLASS = {"CAMERA", "LIGHT"}
-
 
 @contextlib.contextmanager
 def _changed(owner, **values):
@@ -75,17 +73,16 @@ def camera_of(scene):
     return camera
 
 
-def export_transparent(scene, path, transparent, animation):
+def export_transparent(scene, view_layer, path, transparent, animation):
     """Writes these objects, the active camera and the lights as a GLB. Raises Trouble."""
+    seen = marks.rendered(view_layer)
     names = {each.name for each in transparent} | {camera_of(scene).name}
+    names |= {each.name for each in scene.objects if each.type == "LIGHT" and each.name in seen}
     arguments = dict(filepath=path, export_format="GLB", use_renderable=True, use_active_scene=True, export_apply=True,
                      export_cameras=True, export_lights=True, export_extras=False, export_yup=True,
                      export_animations=animation)
     with contextlib.ExitStack() as stack:
-        stack.enter_context(marks.only(scene, lambda each: each.name in names or each.type in _WITH_THE_GLASS))
-        for each in scene.objects:
-            if each.type == "CAMERA" and each != scene.camera and not each.hide_render:
-                stack.enter_context(_changed(each, hide_render=True))
+        stack.enter_context(marks.only(scene, lambda each: each.name in names))
         stack.enter_context(_changed(scene.camera, hide_render=False))
         try:
             bpy.ops.export_scene.gltf(**arguments, **compat.gltf_arguments(animation))

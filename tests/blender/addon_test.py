@@ -138,6 +138,15 @@ class Compositing(BlenderTest):
         # The ball stands 6 m before the camera, whose axis falls by 0.27 rad, and has a radius of 0.7 m.
         self.assertRegex(rows, r"<td>ball</td><td>glass</td>.*?<td>5\.\d+ to 6\.\d+ m</td>")
 
+    def test_what_the_view_layer_leaves_out_stays_out(self):
+        lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT"))
+        bpy.data.collections["things"].objects.link(lamp)
+        bpy.context.view_layer.layer_collection.children["things"].exclude = True
+        self.composite()
+        with open(os.path.join(self.folder, "transparent.glb"), "rb") as glb:
+            names = [node["name"] for node in json.loads(glb.read()[20:].split(b"BIN\0")[0][:-4])["nodes"]]
+        self.assertEqual(sorted(names), ["camera", "pane", "sun"])
+
     def test_widgets_become_flags(self):
         chosen = self.scene.pellucid
         chosen.flag_method, chosen.flag_aa, chosen.flag_edges, chosen.more = "weighted", 2, "off", "--weight eq7"
