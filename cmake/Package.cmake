@@ -60,6 +60,7 @@ set(same "(= ${PROJECT_VERSION}-1)")
 package(program pellucid graphics "composite transparency onto finished renders"
   "Glass, smoke, fog, particles and foliage from glTF or deep EXR files are\ncomposited exactly onto opaque pictures of any renderer, and written back\ninto the same EXR."
   SHLIBDEPS DEPENDS ${gl})
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS xdg-utils)  # which `pellucid view` opens files with
 package(c libpellucid-c${PROJECT_VERSION_MAJOR} libs "order-independent transparency behind an engine"
   "A C library that draws transparent things in any order in the frame of an\nengine that renders with OpenGL." SHLIBDEPS)
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/papers/shlibs

@@ -25,6 +25,7 @@ void addVerbs(CLI::App& app) {
   addFlatten(app);
   addFragments(app);
   addStudy(app);
+  addView(app);
   addHelp(app);
   checkOutputsFirst(app);
   setUpHelp(app);

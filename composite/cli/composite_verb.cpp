@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/explain_page.h"
 #include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verb_flags.h"
@@ -51,8 +52,11 @@ void composite(const CompositeFlags& flags, const FrameRun& frame, const Kept& k
   flags.preview.check(request.shot.colour, request.shot.scene.assetRoot);
   Compositor compositor(
       request, [](const std::string& note) { say(note); }, frame.watcher(), kept);
-  if (flags.explain) {
-    for (const std::string& line : describe(compositor.plan(request), compositor.facts())) fmt::print("{}\n", line);
+  if (flags.explain || !flags.explainPage.empty()) {
+    const std::vector<std::string> described = describe(compositor.plan(request), compositor.facts());
+    for (const std::string& line : described) fmt::print("{}\n", line);
+    if (!flags.explainPage.empty())
+      writeExplainPage(flags.explainPage, described, request.shot.opaque, request.shot.inputs, flags.output);
     return;
   }
   Result result = compositor.run(request);
@@ -71,6 +75,8 @@ void compositeViews(const CompositeFlags& flags, const FrameRun& frame, const Ke
   const Threads threads(flags.run.threads);
   if (flags.preview.wanted())
     throw UsageError("--preview: found it with --view all, expected one view: a PNG shows one picture");
+  if (!flags.explainPage.empty())
+    throw UsageError("--explain-page: found it with --view all, expected one view: a page shows one plan");
   const std::vector<std::string> views = viewsOf(flags.render.opaque);
   std::vector<std::unique_ptr<Compositor>> compositors;
   std::vector<Result> results;
@@ -126,6 +132,7 @@ void addComposite(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "composite", "Composite transparent geometry onto an opaque render: exactly, unless --method says otherwise");
   flags->addTo(*verb);
+  verb->add_option("--explain-page", flags->explainPage, "As --explain, and write it as a page with a diagram");
   sequence->addTo(*verb);
   verb->callback([verb, flags, sequence] {
     flags->model.apply(*verb);

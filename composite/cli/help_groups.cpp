@@ -6,6 +6,13 @@
 
 namespace pellucid::cli {
 
+const std::vector<std::string>& helpGroups() {
+  using namespace headings;
+  static const std::vector<std::string> groups{kCommon, kInput, kPicture, kMethod, kScattering, kLight,
+                                               kAir,    kTime,  kQuality, kOutput, kThresholds, kRunning};
+  return groups;
+}
+
 const HelpRow* helpRow(const std::string& flag) {
   for (const HelpRow& row : helpRows())
     if (flag == row.flag) return &row;

@@ -7,6 +7,13 @@
 
 namespace pellucid::cli {
 
+namespace headings {
+inline constexpr const char *kCommon = "Most used", *kInput = "Input", *kPicture = "Picture", *kMethod = "Method",
+                            *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air",
+                            *kTime = "Time and lens", *kQuality = "Quality", *kOutput = "Output",
+                            *kThresholds = "Thresholds", *kRunning = "Running";
+}  // namespace headings
+
 // The headings, in the order of --help. Flags that most people need stand under the first, whatever they do.
 const std::vector<std::string>& helpGroups();
 

@@ -3,9 +3,7 @@
 namespace pellucid::cli {
 namespace {
 
-constexpr const char *kCommon = "Most used", *kInput = "Input", *kPicture = "Picture", *kMethod = "Method",
-                     *kScattering = "Scattering", *kLight = "Light and shadow", *kAir = "Air", *kTime = "Time and lens",
-                     *kQuality = "Quality", *kOutput = "Output", *kThresholds = "Thresholds", *kRunning = "Running";
+using namespace headings;
 
 // In the order in which a group lists them.
 const std::vector<HelpRow> kRows{
@@ -23,6 +21,7 @@ const std::vector<HelpRow> kRows{
     {"--unit", kInput, "METRES"},
     {"--scene-unit", kInput, "METRES"},
     {"--asset-root", kInput, "FOLDER"},
+    {"--scene", kInput, "FILE.glb"},
     {"--held-out-by", kInput, "PLANES.exr"},
     {"--devices", kInput, ""},
     {"--layer-beauty", kInput, "LAYER"},
@@ -129,19 +128,15 @@ const std::vector<HelpRow> kRows{
     {"--progress", kRunning, ""},
     {"--log-json", kRunning, ""},
     {"--explain", kRunning, ""},
+    {"--explain-page", kRunning, "FILE.html"},
     {"--stats", kRunning, ""},
     {"--json", kRunning, ""},
+    {"--print", kRunning, ""},
     {"--version", kRunning, ""},
     {"--help", kRunning, ""},
 };
 
 }  // namespace
-
-const std::vector<std::string>& helpGroups() {
-  static const std::vector<std::string> groups{kCommon, kInput, kPicture, kMethod, kScattering, kLight,
-                                               kAir,    kTime,  kQuality, kOutput, kThresholds, kRunning};
-  return groups;
-}
 
 const std::vector<HelpRow>& helpRows() {
   return kRows;

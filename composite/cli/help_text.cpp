@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
 #include "composite/cli/application.h"
 #include "composite/cli/help_groups.h"
@@ -19,14 +20,20 @@ std::string upper(std::string text) {
 
 }  // namespace
 
-// Of "TEXT:{a,b}" the choices, "a|b"; "" where it has none.
-std::string choicesText(const CLI::Option& option, const char* separator) {
+std::vector<std::string> choicesOf(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const auto open = type.find('{'), close = type.rfind('}');
-  if (open == std::string::npos || close == std::string::npos) return "";
-  std::string choices;
-  for (const char c : type.substr(open + 1, close - open - 1)) choices += c == ',' ? separator : std::string(1, c);
+  if (open == std::string::npos || close == std::string::npos) return {};
+  std::vector<std::string> choices;
+  std::istringstream words(type.substr(open + 1, close - open - 1));
+  for (std::string word; std::getline(words, word, ',');) choices.push_back(word);
   return choices;
+}
+
+std::string choicesText(const CLI::Option& option, const char* separator) {
+  std::string text;
+  for (const std::string& choice : choicesOf(option)) text += (text.empty() ? "" : separator) + choice;
+  return text;
 }
 
 // "-o, --output FILE", or with the first of its names alone

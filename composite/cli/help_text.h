@@ -2,6 +2,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace pellucid::cli {
 
@@ -18,6 +19,7 @@ std::string helpSentence(std::string text);                                 // a
 std::string flagText(const CLI::Option& option, bool first = false);        // "-o, --output FILE", or its first name
 std::string placeText(const CLI::Option& option);                           // "SCENES..." of a positional
 std::string usageText(const CLI::App& verb);                                // "pellucid flatten FILES... -o FILE"
+std::vector<std::string> choicesOf(const CLI::Option& option);              // of "TEXT:{a,b}" both; else empty
 std::string choicesText(const CLI::Option& option, const char* separator);  // "a|b"; "" for what has no choices
 
 // A name, and beside it in a column of its own what is said of it.

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/file_page.h"
 #include "composite/cli/options.h"
 #include "composite/cli/over_frames.h"
 #include "composite/cli/verbs.h"
@@ -14,23 +15,40 @@ namespace {
 
 struct InspectFlags {
   std::string file;
+  std::string page, camera;
+  std::vector<std::string> scenes;
   bool devices = false, json = false;
   ReadFlags read;
   SequenceFlags sequence;
 };
 
+void printDevices(bool json) {
+  const std::vector<std::string> devices = listDevices();
+  if (json)
+    fmt::print("{}\n", nlohmann::json(devices).dump(2));
+  else
+    for (const std::string& device : devices) fmt::print("{}\n", device);
+}
+
+// What the page alone reads.
+void checkPage(const InspectFlags& flags) {
+  if (!flags.scenes.empty() && flags.page.empty())
+    throw UsageError("--scene: found it without --html, expected --html FILE.html: the page shows the scene");
+  if (!flags.camera.empty() && flags.scenes.empty())
+    throw UsageError("--camera: found it without --scene, expected --scene FILE.glb: the camera sees that");
+}
+
 void inspect(const InspectFlags& flags) {
   if (flags.devices) {
     if (!flags.file.empty()) throw UsageError("inspect: found FILE and --devices, expected one of them");
-    const std::vector<std::string> devices = listDevices();
-    if (flags.json)
-      fmt::print("{}\n", nlohmann::json(devices).dump(2));
-    else
-      for (const std::string& device : devices) fmt::print("{}\n", device);
-    return;
+    if (!flags.page.empty()) throw UsageError("inspect: found --html and --devices, expected one of them");
   }
+  checkPage(flags);
+  if (flags.devices) return printDevices(flags.json);
   if (flags.file.empty()) throw UsageError("inspect: found neither FILE nor --devices, expected one of them");
+  const CameraChoice camera = cameraChoice(flags.camera);
   const nlohmann::json report = inspectExr(flags.file, flags.read.options());
+  if (!flags.page.empty()) writeFilePage(flags.page, flags.file, report, flags.read.options(), flags.scenes, camera);
   if (flags.json)
     fmt::print("{}\n", report.dump(2));
   else
@@ -45,6 +63,13 @@ void addInspect(CLI::App& app) {
   verb->add_option("file", flags->file, "EXR");
   verb->add_flag("--devices", flags->devices, "List the GL devices");
   verb->add_flag("--json", flags->json, "Print results as JSON");
+  verb->add_option("--html", flags->page,
+                   "Self-contained page to write: layers, channels, histogram of depth, the camera from above");
+  verb->add_option("--scene", flags->scenes,
+                   "Of --html: glTF, GLB or deep EXR that the page shows over the picture and from above")
+      ->allow_extra_args(false);
+  verb->add_option("--camera", flags->camera,
+                   "Of --scene: glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES, or fit[:A,E]");
   flags->read.addTo(*verb);
   flags->sequence.addTo(*verb, {.sideBySide = true, .resumes = false});
   verb->callback([verb, flags] {

@@ -26,6 +26,7 @@ struct CompositeFlags {
   ModelFlag model;
   RunFlags run;
   bool explain = false;
+  std::string explainPage;  // of the program alone: other skins have the plan as data
   //   allViews  --view all is taken
   void addTo(CLI::App& verb, bool allViews = true);
 };

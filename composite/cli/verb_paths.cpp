@@ -14,7 +14,7 @@ struct OutputFlag {
 constexpr OutputFlag kOutputs[] = {
     {"--output", "study", OutputKind::folder}, {"--output", "", OutputKind::exr},
     {"--shadow-views", "", OutputKind::exr},   {"--html", "", OutputKind::page},
-    {"--preview", "", OutputKind::image},
+    {"--preview", "", OutputKind::image},      {"--explain-page", "", OutputKind::page},
 };
 
 struct InputFlag {
@@ -24,7 +24,7 @@ struct InputFlag {
 constexpr InputFlag kInputs[] = {
     {"--depth", true},        {"--aov", true},          {"--ocio", true},        {"--environment", true},
     {"--fog", true},          {"--fog-grid", true},     {"--layer-depth", true}, {"--weight-from", false},
-    {"--method-from", false}, {"--held-out-by", false},
+    {"--method-from", false}, {"--held-out-by", false}, {"--scene", true},
 };
 
 std::optional<OutputKind> writtenBy(const std::string& verb, const std::string& flag) {

@@ -15,6 +15,7 @@ void addCompare(CLI::App& app);
 void addFlatten(CLI::App& app);
 void addFragments(CLI::App& app);
 void addStudy(CLI::App& app);
+void addView(CLI::App& app);
 
 // The whole program but for main(): returns the exit code. DESIGN, The command line
 int run(int argc, const char* const* argv);

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "composite/compare/page_frame.h"
+#include "composite/compare/page_layers.h"
 #include "gbuffer/atomic_file.h"
 #include "gbuffer/errors.h"
 
@@ -59,7 +60,27 @@ std::string packed(const Image<glm::vec3>& rgb) {
   return base64(deflated);
 }
 
-std::string escaped(const std::string& text) {
+std::string tableHtml(const PageTable& table) {
+  std::string html = "<h2>" + escapedHtml(table.title) + "</h2><table><tr>";
+  for (const std::string& cell : table.head) html += "<th>" + escapedHtml(cell) + "</th>";
+  html += "</tr>";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (const std::string& cell : row) html += "<td>" + escapedHtml(cell) + "</td>";
+    html += "</tr>";
+  }
+  return html + "</table>\n";
+}
+
+// Text inside a script element: "</script" and "<!--" would end or change it.
+std::string scriptSafe(std::string json) {
+  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos; at += 6) json.replace(at, 1, "\\u003c");
+  return json;
+}
+
+}  // namespace
+
+std::string escapedHtml(const std::string& text) {
   std::string safe;
   for (const char c : text) {
     if (c == '<')
@@ -76,45 +97,6 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-std::string tableHtml(const PageTable& table) {
-  std::string html = "<h2>" + escaped(table.title) + "</h2><table><tr>";
-  for (const std::string& cell : table.head) html += "<th>" + escaped(cell) + "</th>";
-  html += "</tr>";
-  for (const auto& row : table.rows) {
-    html += "<tr>";
-    for (const std::string& cell : row) html += "<td>" + escaped(cell) + "</td>";
-    html += "</tr>";
-  }
-  return html + "</table>\n";
-}
-
-// Text inside a script element: "</script" and "<!--" would end or change it.
-std::string scriptSafe(std::string json) {
-  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos; at += 6) json.replace(at, 1, "\\u003c");
-  return json;
-}
-
-// Up to three channels of a layer as a picture: R, G, B where it has them, else its first, grey.
-Image<glm::vec3> layerPicture(const ExrPart& part, const std::vector<const ExrChannel*>& channels) {
-  Image<glm::vec3> picture(part.data.width(), part.data.height());
-  for (std::size_t i = 0; i < picture.size(); ++i)
-    for (int c = 0; c < 3; ++c) picture[i][c] = channels[static_cast<std::size_t>(c)]->at(i);
-  return picture;
-}
-
-std::vector<const ExrChannel*> shownChannels(const ExrPart& part, const std::string& layer) {
-  const std::string prefix = layer.empty() ? "" : layer + ".";
-  std::vector<const ExrChannel*> shown{part.find(prefix + "R"), part.find(prefix + "G"), part.find(prefix + "B")};
-  if (shown[0] && shown[1] && shown[2]) return shown;
-  for (const ExrChannel& channel : part.channels)
-    if (channel.name.rfind('.') == (layer.empty() ? std::string::npos : layer.size()) &&
-        channel.name.compare(0, prefix.size(), prefix) == 0)
-      return {&channel, &channel, &channel};
-  return {};
-}
-
-}  // namespace
-
 std::string pageText(const Page& page) {
   nlohmann::json data{{"left", page.left}, {"right", page.right}, {"pictures", nlohmann::json::array()}};
   for (const PagePicture& picture : page.pictures)
@@ -122,13 +104,13 @@ std::string pageText(const Page& page) {
                                 {"width", picture.rgb.width()},
                                 {"height", picture.rgb.height()},
                                 {"data", packed(picture.rgb)}});
-  std::string body = "<h1>" + escaped(page.title) + "</h1>\n";
-  for (const std::string& line : page.lines) body += "<p>" + escaped(line) + "</p>\n";
+  std::string body = "<h1>" + escapedHtml(page.title) + "</h1>\n";
+  for (const std::string& line : page.lines) body += "<p>" + escapedHtml(line) + "</p>\n";
   if (!page.pictures.empty()) body += kPageViews;
   body += page.plotSvg;
   for (const PageTable& table : page.tables) body += tableHtml(table);
   std::string html = kPageHead;
-  html += "<title>" + escaped(page.title) + "</title></head><body>\n" + body;
+  html += "<title>" + escapedHtml(page.title) + "</title></head><body>\n" + body;
   if (!page.pictures.empty()) {
     // File names need not be UTF-8; what is not becomes a replacement character.
     html += "<script id=\"data\" type=\"application/json\">" +

@@ -26,10 +26,13 @@ struct Page {
   std::string title;
   std::vector<std::string> lines;  // what was compared, what came out
   std::vector<PageTable> tables;
-  std::string plotSvg;  // "" for none
+  std::string plotSvg;  // one drawing or several, "" for none
   std::vector<PagePicture> pictures;
   int left = 0, right = 1;  // pictures shown first
 };
+
+// Text as HTML and SVG show it.
+std::string escapedHtml(const std::string& text);
 
 // The page as text. Values are kept as half floats; beyond 65504 they become 65504, and what is not finite stays so.
 std::string pageText(const Page& page);

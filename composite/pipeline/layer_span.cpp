@@ -1,25 +1,15 @@
 #include "composite/pipeline/layer_span.h"
 
 #include "composite/pipeline/layer_source.h"
-#include "engine_bridge/scene/triangle_source.h"
+#include "engine_bridge/scene/corners.h"
 
 namespace pellucid {
 
 DepthSpan layerSpanOf(const Scene& scene, const Camera& camera) {
-  constexpr std::size_t kBatch = 1024;
   DepthSpan span;
-  VertexPlaces places;
-  TriangleBatch batch;
-  for (const Instance& instance : scene.instances) {
-    const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
-    if (!scene.materials[static_cast<std::size_t>(primitive.material)].transparent()) continue;
-    const glm::dmat4 viewFromObject = camera.viewFromWorld * instance.worldFromObject;
-    for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
-      readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
-      for (const Vertex& vertex : batch.vertices)
-        span.add(-(viewFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0)).z);
-    }
-  }
+  forEachCorner(
+      scene, camera.viewFromWorld, [](const Material& material) { return material.transparent(); },
+      [&](const Instance&, const glm::dvec3& view) { span.add(-view.z); });
   return span;
 }
 

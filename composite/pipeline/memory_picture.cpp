@@ -1,6 +1,8 @@
 #include "composite/pipeline/memory_picture.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,19 +51,72 @@ Image<float> openPart(const Image<float>& occlusion) {
   return open;
 }
 
+// What all rows come to, by threads that share nothing; `Sum` puts parts together in any order.
+template <class Sum, class Row>
+Sum overRows(int height, const Row& row) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<int>(0, height), Sum(),
+      [&](const tbb::blocked_range<int>& rows, Sum sum) {
+        for (int y = rows.begin(); y != rows.end(); ++y) row(y, sum);
+        return sum;
+      },
+      [](Sum sum, const Sum& other) {
+        sum.add(other);
+        return sum;
+      });
+}
+
+struct DepthScan {
+  std::size_t firstOdd = std::numeric_limits<std::size_t>::max();  // pixel whose depth is none
+  std::size_t far = 0;                                             // pixels where nothing was hit
+  float least = kNothing, most = 0.0f;                             // of the others
+  void add(const DepthScan& other) {
+    firstOdd = std::min(firstOdd, other.firstOdd);
+    far += other.far;
+    least = std::min(least, other.least);
+    most = std::max(most, other.most);
+  }
+};
+
+DepthScan scanOf(const Image<float>& viewZ) {
+  return overRows<DepthScan>(viewZ.height(), [&](int y, DepthScan& scan) {
+    for (int x = 0; x < viewZ.width(); ++x) {
+      const float z = viewZ.at(x, y);
+      if (z == kNothing) {
+        ++scan.far;
+        continue;
+      }
+      if (!(z >= std::numeric_limits<float>::min() && z < kFarthestInMemory))
+        scan.firstOdd = std::min(scan.firstOdd, static_cast<std::size_t>(y) * static_cast<std::size_t>(viewZ.width()) +
+                                                    static_cast<std::size_t>(x));
+      scan.least = std::min(scan.least, z);
+      scan.most = std::max(scan.most, z);
+    }
+  });
+}
+
+struct PixelCount {
+  std::size_t pixels = 0;
+  void add(const PixelCount& other) { pixels += other.pixels; }
+};
+
+std::size_t nonFinitePixels(const Image<glm::vec4>& beauty) {
+  return overRows<PixelCount>(beauty.height(),
+                              [&](int y, PixelCount& count) {
+                                for (int x = 0; x < beauty.width(); ++x) {
+                                  const glm::vec4& p = beauty.at(x, y);
+                                  count.pixels += !std::isfinite(p.r + p.g + p.b + p.a);
+                                }
+                              })
+      .pixels;
+}
+
 // What messages and `inspect` say of the depths.
 void countDepths(const Image<float>& viewZ, OpaqueChoice& choice) {
-  float least = kNothing, most = 0.0f;
-  for (std::size_t i = 0; i < viewZ.size(); ++i) {
-    if (viewZ[i] == kNothing) {
-      ++choice.farPixels;
-      continue;
-    }
-    least = std::min(least, viewZ[i]);
-    most = std::max(most, viewZ[i]);
-  }
-  choice.least = choice.farPixels < viewZ.size() ? static_cast<double>(least) : 0.0;
-  choice.most = static_cast<double>(most);
+  const DepthScan scan = scanOf(viewZ);
+  choice.farPixels = scan.far;
+  choice.least = scan.far < viewZ.size() ? static_cast<double>(scan.least) : 0.0;
+  choice.most = static_cast<double>(scan.most);
 }
 
 }  // namespace
@@ -80,15 +135,12 @@ void MemoryPicture::check() const {
   expectSize("depth", planes.viewZ, planes.beauty, true);
   expectSize("normals", planes_.normal, planes.beauty, false);
   expectSize("occlusion", planes_.occlusion, planes.beauty, false);
-  const auto width = static_cast<std::size_t>(width_);
-  for (std::size_t i = 0; i < planes.viewZ.size(); ++i) {
-    const float z = planes.viewZ[i];
-    if (z == kNothing || (z >= std::numeric_limits<float>::min() && z < kFarthestInMemory)) continue;
+  const std::size_t odd = scanOf(planes.viewZ).firstOdd, width = static_cast<std::size_t>(width_);
+  if (odd < planes.viewZ.size())
     throw UsageError(
         fmt::format("{}: depth: found {:g} at ({}, {}), expected planar metres above 0 and below {:g}, or +inf where "
                     "nothing was hit",
-                    kMemoryPicture, z, i % width, i / width, kFarthestInMemory));
-  }
+                    kMemoryPicture, planes.viewZ[odd], odd % width, odd / width, kFarthestInMemory));
 }
 
 void MemoryPicture::lend(GBuffer& to) {
@@ -142,10 +194,7 @@ void readMemoryPicture(MemoryPicture& picture, OpaqueFile& file) {
   file.choice.depthKind = "planar";
   file.choice.farValue = static_cast<double>(kFarthestInMemory);
   countDepths(gbuffer.viewZ, file.choice);
-  for (std::size_t i = 0; i < gbuffer.beauty.size(); ++i) {
-    const glm::vec4& p = gbuffer.beauty[i];
-    if (!std::isfinite(p.r + p.g + p.b + p.a)) ++file.choice.nonFiniteColour;
-  }
+  file.choice.nonFiniteColour = nonFinitePixels(gbuffer.beauty);
   if (file.choice.nonFiniteColour > 0)
     file.notes.push_back(fmt::format("colour: {} pixels are not finite", file.choice.nonFiniteColour));
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "composite/compare/page.h"
 #include "gbuffer/loaded_part.h"
 
 namespace pellucid {
@@ -33,12 +34,6 @@ void label(const std::vector<StudyRow>& rows, Plot& plot) {
     plot.lines.push_back({dot.x, dot.y, PlotLayout::labels - 4, y[k], PlotLine::leader});
     plot.texts.push_back({PlotLayout::labels, y[k] + 4, rowName(rows[order[k]]), -1});
   }
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return safe;
 }
 
 }  // namespace
@@ -110,7 +105,7 @@ std::string plotSvg(const Plot& plot) {
                        : text.anchor > 0 ? "end"
                                          : "middle",
                        text.upright ? fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", text.x, text.y) : "",
-                       escaped(text.text));
+                       escapedHtml(text.text));
   return svg + "</svg>\n";
 }
 

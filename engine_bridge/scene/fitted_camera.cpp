@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine_bridge/scene/triangle_source.h"
+#include "engine_bridge/scene/corners.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid {
@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 0.06;  // of half the picture, on each side
-constexpr std::size_t kBatch = 1024;
 
 struct Axes {
   glm::dvec3 right, up, forward;
@@ -51,22 +50,15 @@ Camera fittedCamera(const FittedCamera& wanted, const Scene& scene, const Window
   const double aspect = pixelAspect * static_cast<double>(display.width()) / static_cast<double>(display.height());
   Side across{slope * aspect}, upwards{slope};
   double nearest = kInfinity, farthest = -kInfinity;
-  VertexPlaces places;
-  TriangleBatch batch;
-  for (const Instance& instance : scene.instances) {
-    const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
-    for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
-      readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
-      for (const Vertex& vertex : batch.vertices) {
-        const glm::dvec3 world(instance.worldFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0));
+  forEachCorner(
+      scene, glm::dmat4(1.0), [](const Material&) { return true; },
+      [&](const Instance&, const glm::dvec3& world) {
         const double along = glm::dot(world, axes.forward);
         across.add(glm::dot(world, axes.right), along);
         upwards.add(glm::dot(world, axes.up), along);
         nearest = std::min(nearest, along);
         farthest = std::max(farthest, along);
-      }
-    }
-  }
+      });
   if (!std::isfinite(nearest) || !std::isfinite(farthest))
     throw MeaningError("--camera fit: found no triangle in the scene, expected something to frame");
   // What is long and narrow lies inside the cone of its nearest vertex: the eye keeps away from that, by a millimetre

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "engine_bridge/scene/triangle_source.h"
+#include "engine_bridge/scene/corners.h"
 #include "gbuffer/view_point.h"
 
 namespace pellucid {
@@ -56,24 +56,14 @@ bool castsInto(Casters kind, const Material& material) {
 }
 
 Bounds casterBounds(const Scene& scene, Casters kind, const glm::dmat4& toSpace, double& farthest) {
-  constexpr std::size_t kBatch = 1024;
   Bounds bounds;
   double squared = 0.0;
-  VertexPlaces places;
-  TriangleBatch batch;
-  for (const Instance& instance : scene.instances) {
-    const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
-    if (!castsInto(kind, scene.materials[static_cast<std::size_t>(primitive.material)])) continue;
-    const glm::dmat4 placed = toSpace * instance.worldFromObject;
-    for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
-      readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
-      for (const Vertex& vertex : batch.vertices) {
-        const glm::dvec3 point(placed * glm::dvec4(glm::dvec3(vertex.position), 1.0));
+  forEachCorner(
+      scene, toSpace, [&](const Material& material) { return castsInto(kind, material); },
+      [&](const Instance&, const glm::dvec3& point) {
         bounds.add(point);
         squared = std::max(squared, glm::dot(point, point));
-      }
-    }
-  }
+      });
   farthest = std::sqrt(squared);
   return bounds;
 }

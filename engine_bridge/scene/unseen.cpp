@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine_bridge/scene/triangle_source.h"
+#include "engine_bridge/scene/corners.h"
 
 namespace pellucid {
 namespace {
@@ -16,7 +16,7 @@ struct Reach {
   double nearest = std::numeric_limits<double>::infinity();    // planar metres of those before the eye
   double farthest = -std::numeric_limits<double>::infinity();  // of all; negative behind the eye
   // How many lie outside each edge of the data window: left, right, top, bottom.
-  std::size_t outside[4] = {}, before = 0, triangles = 0;
+  std::size_t outside[4] = {}, before = 0;
 
   void add(const Projected& point, const Window& data) {
     farthest = std::max(farthest, point.z);
@@ -36,23 +36,13 @@ struct Reach {
 };
 
 Reach reachOf(const Scene& scene, const Camera& camera, const GBuffer& gbuffer, std::size_t& corners) {
-  constexpr std::size_t kBatch = 1024;
   Reach reach;
-  VertexPlaces places;
-  TriangleBatch batch;
-  for (const Instance& instance : scene.instances) {
-    const Primitive& primitive = scene.primitives[static_cast<std::size_t>(instance.primitive)];
-    if (!scene.materials[static_cast<std::size_t>(primitive.material)].transparent()) continue;
-    reach.triangles += primitive.triangles();
-    for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
-      readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
-      corners += batch.vertices.size();
-      for (const Vertex& vertex : batch.vertices)
-        reach.add(project(camera, gbuffer.display,
-                          glm::dvec3(instance.worldFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0))),
-                  gbuffer.data);
-    }
-  }
+  forEachCorner(
+      scene, glm::dmat4(1.0), [](const Material& material) { return material.transparent(); },
+      [&](const Instance&, const glm::dvec3& world) {
+        ++corners;
+        reach.add(project(camera, gbuffer.display, world), gbuffer.data);
+      });
   return reach;
 }
 
@@ -72,7 +62,7 @@ std::string whyNothingShows(const Scene& scene, const Camera& camera, const GBuf
   if (scene.instances.empty()) return "it holds no mesh";
   std::size_t corners = 0;
   const Reach reach = reachOf(scene, camera, gbuffer, corners);
-  if (reach.triangles == 0)
+  if (corners == 0)
     return fmt::format(
         "none of the {} materials that its meshes use is transparent (alphaMode BLEND or MASK, or "
         "KHR_materials_transmission)",

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "composite/cli/help_groups.h"
-#include "composite/cli/help_text.h"
+#include "composite/cli/flag_table.h"
 #include "composite/cli/suggest.h"
 #include "composite/cli/verb_outputs.h"
 #include "gbuffer/errors.h"
@@ -30,22 +29,20 @@ py::list rowsOf(const std::string& name) {
   Flags flags;
   flags.addTo(verb);
   py::list rows;
-  for (const CLI::Option* option : verb.get_options()) {
-    if (option->get_positional() || option->get_lnames().empty()) continue;
-    const std::string first = option->get_lnames()[0];
+  for (const cli::FlagRow& row : cli::flagRows(verb)) {
+    const std::string& first = row.names.front();
     if (std::find(std::begin(kOfTerminals), std::end(kOfTerminals), first) != std::end(kOfTerminals)) continue;
-    const cli::HelpRow* row = cli::helpRow("--" + first);
     py::dict entry;
     entry["name"] = keywordOf(first);
-    entry["flag"] = "--" + first;
-    entry["names"] = option->get_lnames();
-    entry["group"] = row ? row->group : "";
-    entry["help"] = cli::helpSentences(*option);
-    entry["value"] = row ? row->value : "";
-    entry["type"] = option->get_type_name();
-    entry["default"] = option->get_default_str();
-    entry["switch"] = option->get_items_expected_max() == 0;
-    entry["many"] = option->get_items_expected_max() >= CLI::detail::expected_max_vector_size;
+    entry["flag"] = row.flag;
+    entry["names"] = row.names;
+    entry["group"] = row.group;
+    entry["help"] = row.help;
+    entry["value"] = row.value;
+    entry["type"] = row.type;
+    entry["default"] = row.standard;
+    entry["switch"] = row.isSwitch;
+    entry["many"] = row.many;
     rows.append(entry);
   }
   return rows;

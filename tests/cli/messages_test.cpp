@@ -134,7 +134,8 @@ TEST(Messages, PlantedPromisesAreFound) {
   EXPECT_EQ(broken("composite/cli/resolve_verb.cpp", R"(throw Error("a: expected one, or --camera NAME");)").size(),
             1u);
   EXPECT_EQ(broken("composite/cli/resolve_verb.cpp", R"(f("those of accumulate --camera");)").size(), 0u);
-  EXPECT_EQ(broken("gbuffer/channels.cpp", R"(f("or --camera NAME");)").size(), 2u) << "resolve and inspect lack it";
+  EXPECT_EQ(broken("gbuffer/channels.cpp", R"(f("or --environment R,G,B");)").size(), 2u)
+      << "resolve and inspect lack it";
   EXPECT_EQ(broken("engine_bridge/gl/any.cpp", R"(f("--no-such-flag", "--shadow-size");)").size(), 1u);
   EXPECT_EQ(broken("engine_bridge/gl/any.cpp", R"(  // "--no-such-flag")").size(), 0u);
 }

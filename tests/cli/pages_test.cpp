@@ -1,11 +1,15 @@
 // Man pages and completion: every flag is in them, and the tools that read them take them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "composite/cli/application.h"
 #include "composite/cli/pages/pages.h"
 #include "composite/cli/suggest.h"
+#include "composite/methods/method.h"
 #include "tests/support/program.h"
 #include "tests/support/shell.h"
 
@@ -83,6 +87,28 @@ TEST_F(Pages, ZshReadsIt) {
   for (const CLI::App* verb : verbsOf(app))
     for (const std::string& flag : flagsOf(*verb))
       EXPECT_NE(text.find("'*" + flag + "["), std::string::npos) << verb->get_name() << " " << flag;
+}
+
+// What add-ons in other languages read in the place of --help.
+TEST_F(Pages, TheTableHasEveryFlagWithItsHelp) {
+  const nlohmann::json table = nlohmann::json::parse(slurp(folder + "/pellucid/flags.json"));
+  for (const CLI::App* verb : verbsOf(app)) {
+    std::set<std::string> names;
+    for (const nlohmann::json& row : table["verbs"][verb->get_name()]) {
+      for (const nlohmann::json& name : row["names"]) names.insert("--" + name.get<std::string>());
+      EXPECT_NE(row["help"], "") << row;
+    }
+    for (const std::string& flag : flagsOf(*verb))
+      EXPECT_TRUE(flag.rfind("--", 0) != 0 || names.count(flag)) << verb->get_name() << " " << flag;
+  }
+  const nlohmann::json& flags = table["verbs"]["composite"];
+  const auto precision =
+      std::find_if(flags.begin(), flags.end(), [](const nlohmann::json& row) { return row["flag"] == "--precision"; });
+  ASSERT_NE(precision, flags.end());
+  EXPECT_EQ((*precision)["choices"], (nlohmann::json{"published", "float", "exact"}));
+  EXPECT_EQ((*precision)["default"], "float");
+  EXPECT_EQ(table["exits"]["6"], "Disk, memory or the GL device ran out.");
+  EXPECT_EQ(table["methods"][0]["name"], allMethods()[0].name);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ import pellucid
 from pellucid._words import words
 
 VERBS = ("composite", "accumulate", "resolve", "flatten", "compare", "study")
-OF_TERMINALS = {"help", "json", "stats", "explain", "output", "frames", "jobs", "skip_existing", "progress", "log_json"}
+OF_TERMINALS = {"help", "json", "stats", "explain", "explain_page", "output", "frames", "jobs", "skip_existing",
+                "progress", "log_json"}
 
 
 @pytest.mark.parametrize("verb", VERBS)

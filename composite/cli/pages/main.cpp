@@ -1,4 +1,4 @@
-// pellucid_pages FOLDER: writes man pages and completion below it, where they are installed from.
+// pellucid_pages FOLDER: writes man pages, completion and the table of flags below it, where they are installed from.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -26,6 +26,7 @@ bool writeAll(const std::filesystem::path& folder) {
   bool done = write(man / "pellucid.1", manOfProgram(app, PELLUCID_VERSION));
   for (const CLI::App* verb : verbsOf(app))
     done = write(man / ("pellucid-" + verb->get_name() + ".1"), manOfVerb(*verb, app, PELLUCID_VERSION)) && done;
+  done = write(folder / "pellucid" / "flags.json", flagTable(app, PELLUCID_VERSION)) && done;
   done = write(folder / "bash-completion" / "completions" / "pellucid", bashCompletion(app)) && done;
   return write(folder / "zsh" / "vendor-completions" / "_pellucid", zshCompletion(app)) && done;
 }

@@ -41,12 +41,9 @@ std::string lowered(std::string text) {
 }
 
 std::string exits() {
-  return ".SH EXIT STATUS\n" + row("0", "Done.") + row("1", "The files differ, or the error is over the tolerance.") +
-         row("2", "A verb or a flag is unknown, malformed or cannot be honoured.") +
-         row("3", "An input is missing, unreadable or damaged.") +
-         row("4", "An input contradicts itself or lacks what is needed, such as a depth or a camera.") +
-         row("5", "Some frames of a sequence failed.") + row("6", "Disk, memory or the GL device ran out.") +
-         row("130, 143", "Interrupted; the old output stays whole.");
+  std::string text = ".SH EXIT STATUS\n";
+  for (const ExitRow& exit : exitRows()) text += row(exit.codes, exit.meaning);
+  return text;
 }
 
 std::string seeAlso(const CLI::App& app, const std::string& but) {

@@ -11,6 +11,14 @@ std::string manOfProgram(const CLI::App& app, const std::string& version);
 std::string manOfVerb(const CLI::App& verb, const CLI::App& app, const std::string& version);
 std::string bashCompletion(const CLI::App& app);
 std::string zshCompletion(const CLI::App& app);
+// All of it as one JSON object, for skins in other languages: version, exits, methods, and verbs with their flags.
+std::string flagTable(const CLI::App& app, const std::string& version);
+
+// What an exit code means. 130 and 143 share a row.
+struct ExitRow {
+  const char *codes, *meaning;
+};
+const std::vector<ExitRow>& exitRows();
 
 // What may stand after a flag, for completion.
 struct ValueWords {

@@ -1,5 +1,3 @@
-#include <sstream>
-
 #include "composite/cli/help_groups.h"
 #include "composite/cli/help_text.h"
 #include "composite/cli/pages/pages.h"
@@ -13,8 +11,7 @@ std::vector<const CLI::App*> verbsOf(const CLI::App& app) {
 ValueWords valueWords(const CLI::Option& option, const std::string& verb) {
   ValueWords words;
   words.none = option.nonpositional() && option.get_items_expected_max() == 0;
-  std::istringstream choices(choicesText(option, "\n"));
-  for (std::string choice; std::getline(choices, choice);) words.choices.push_back(choice);
+  words.choices = choicesOf(option);
   if (words.none || !words.choices.empty()) return words;
   const HelpRow* row = option.get_lnames().empty() ? nullptr : helpRow("--" + option.get_lnames()[0]);
   const std::string value = row ? row->value : "FILE";  // what has no name is a file

@@ -1,0 +1,45 @@
+#include "composite/cli/file_page.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "composite/cli/scene_look.h"
+#include "composite/look/inspect_page.h"
+#include "gbuffer/errors.h"
+#include "gbuffer/inspect.h"
+
+namespace pellucid::cli {
+namespace {
+
+Page pageWithScene(const std::string& file, const std::string& text, const ReadOptions& read,
+                   const std::vector<std::string>& scenes, const CameraChoice& camera) {
+  try {
+    ScenePreview preview = previewOf(file, scenes, read, camera);
+    const SceneLook look = lookAt(preview);
+    const Shot& shot = preview.compositor->shot();
+    return inspectPage(shot.opaque.document, text, UnderstoodShot{&shot.opaque, shot.camera}, look);
+  } catch (const Error& error) {
+    // Its sentences name flags of that verb.
+    throw Error(error.exitCode(), std::string("composite says: ") + error.what());
+  }
+}
+
+}  // namespace
+
+void writeFilePage(const std::string& page, const std::string& file, const nlohmann::json& report,
+                   const ReadOptions& read, const std::vector<std::string>& scenes, const CameraChoice& camera) {
+  const std::string text = inspectionText(report);
+  if (!scenes.empty()) {
+    writePage(page, pageWithScene(file, text, read, scenes, camera));
+    return;
+  }
+  if (report.contains("refusal")) {  // no picture with a depth: its channels all the same
+    writePage(page, inspectPage(readExr(file), text, std::nullopt, std::nullopt));
+    return;
+  }
+  std::unique_ptr<DeepOpaque> deep;
+  const OpaqueFile opaque = readPictureFile(file, read, nullptr, deep);
+  writePage(page, inspectPage(opaque.document, text, UnderstoodShot{&opaque, opaque.gbuffer.camera}, std::nullopt));
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,18 @@
+// The page that shows what an EXR holds, for `inspect --html` and `view`.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "composite/pipeline/request.h"
+
+namespace pellucid::cli {
+
+//   report  inspectExr() of the file
+//   scenes  glTF and deep EXR to show over it; empty: none
+// Throws what readers throw, ResourceError when the page cannot be written, and with scenes what Compositor throws.
+void writeFilePage(const std::string& page, const std::string& file, const nlohmann::json& report,
+                   const ReadOptions& read, const std::vector<std::string>& scenes = {},
+                   const CameraChoice& camera = {});
+
+}  // namespace pellucid::cli
