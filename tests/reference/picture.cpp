@@ -1,0 +1,131 @@
+#include "tests/reference/picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/reference/texels.h"
+
+namespace pellucid::reference {
+namespace {
+
+// Where a ray meets a triangle: the shares of its corners, and planar depth.
+struct Within {
+  Vec3 shares;
+  double z;
+  double facing;  // cosine between ray and normal, below 0 from the front
+};
+
+// By the volumes that the ray spans with the edges: all of one sign where it passes between them.
+std::optional<Within> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 p = a - ray.from, q = b - ray.from, r = c - ray.from;
+  const Vec3 volumes(glm::dot(ray.along, glm::cross(q, r)), glm::dot(ray.along, glm::cross(r, p)),
+                     glm::dot(ray.along, glm::cross(p, q)));
+  const bool above = volumes.x > 0.0 && volumes.y > 0.0 && volumes.z > 0.0;
+  const bool below = volumes.x < 0.0 && volumes.y < 0.0 && volumes.z < 0.0;
+  if (!above && !below) return std::nullopt;
+  const Vec3 shares = volumes / (volumes.x + volumes.y + volumes.z);
+  const Vec3 normal = glm::cross(q - p, r - p);
+  const double z = glm::dot(normal, p) / glm::dot(normal, ray.along);
+  if (!(z > 0.0)) return std::nullopt;
+  return Within{shares, z, glm::dot(normal, ray.along) / (glm::length(normal) * glm::length(ray.along))};
+}
+
+// Straight colour of a coat, and how much of the place it covers.
+std::optional<Layer> layerOf(const PictureScene& scene, const Mesh& mesh, const std::array<int, 3>& triangle,
+                             const Within& within) {
+  Vec2 uv(0.0);
+  Vec4 colour(0.0);
+  for (int k = 0; k < 3; ++k) {
+    const Corner& corner = mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
+    uv += within.shares[k] * corner.uv;
+    colour += within.shares[k] * corner.colour;
+  }
+  const Coat& coat = mesh.coat;
+  colour *= coat.colour;
+  if (coat.texture >= 0)
+    colour *= texelAt(scene.textures[static_cast<std::size_t>(coat.texture)], Vec2(coat.fromUv * Vec3(uv, 1.0)));
+  const double covered = coat.covering == Covering::blend ? std::clamp(colour.a, 0.0, 1.0)
+                         : colour.a >= coat.cutoff        ? 1.0
+                                                          : 0.0;
+  if (!(covered > 0.0)) return std::nullopt;
+  Layer layer;
+  layer.coverage = covered;
+  layer.reflected = {colour.r, colour.g, colour.b};
+  layer.z = within.z;
+  return layer;
+}
+
+}  // namespace
+
+Picture::Picture(const PictureScene& scene) : scene_(scene) {
+  for (const Mesh& mesh : scene_.meshes) {
+    bounds_.emplace_back();
+    for (const auto& triangle : mesh.triangles) bounds_.back().push_back(boundsOf(mesh, triangle));
+  }
+}
+
+// Everything, where a corner is not clearly before the eye.
+Picture::Bounds Picture::boundsOf(const Mesh& mesh, const std::array<int, 3>& triangle) const {
+  const Eye& eye = scene_.eye;
+  Bounds bounds{kNothing, kNothing, -kNothing, -kNothing};
+  for (const int index : triangle) {
+    const Vec3 at = glm::transpose(eye.axes) * (mesh.corners[static_cast<std::size_t>(index)].at - eye.at);
+    if (!eye.parallel && !(-at.z > 1e-3 * glm::length(at))) return {-kNothing, -kNothing, kNothing, kNothing};
+    const Vec2 part = Vec2(at) / (eye.parallel ? 1.0 : -at.z) / eye.half;
+    const double x = 0.5 * (1.0 + part.x) * eye.width, y = 0.5 * (1.0 - part.y) * eye.height;
+    bounds = {std::min(bounds.x0, x), std::min(bounds.y0, y), std::max(bounds.x1, x), std::max(bounds.y1, y)};
+  }
+  const double margin = 1e-6 * (eye.width + eye.height + std::abs(bounds.x1) + std::abs(bounds.y1));
+  return {bounds.x0 - margin, bounds.y0 - margin, bounds.x1 + margin, bounds.y1 + margin};
+}
+
+Column Picture::columnAt(double x, double y) const {
+  Column column;
+  column.ray = rayThrough(scene_.eye, x, y);
+  column.opaque = nearestSolid(scene_, column.ray);
+  for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+    const Mesh& mesh = scene_.meshes[m];
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Bounds& in = bounds_[m][t];
+      if (x < in.x0 || x > in.x1 || y < in.y0 || y > in.y1) continue;
+      const auto& triangle = mesh.triangles[t];
+      const auto corner = [&](std::size_t k) { return mesh.corners[static_cast<std::size_t>(triangle[k])].at; };
+      const auto within = meet(column.ray, corner(0), corner(1), corner(2));
+      if (!within || !(within->facing < 0.0 || mesh.coat.bothSides)) continue;
+      if (const auto layer = layerOf(scene_, mesh, triangle, *within))
+        column.crossings.push_back({*layer, 1.0 / std::abs(within->facing), mesh.on});
+    }
+  }
+  std::sort(column.crossings.begin(), column.crossings.end(),
+            [](const Crossing& a, const Crossing& b) { return a.layer.z < b.layer.z; });
+  return column;
+}
+
+Shown Picture::shownBefore(const Column& column, const Face& face, double z) {
+  Shown shown;
+  for (const Crossing& crossing : column.crossings) {
+    const bool touches = face.solid >= 0 && crossing.on == face;
+    if (!touches && crossing.layer.z > z) continue;
+    const Layer& layer = crossing.layer;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto channel = static_cast<glm::length_t>(c);
+      shown.light[channel] += shown.transmission[channel] * (layer.coverage * layer.reflected[c] + layer.additive[c]);
+      shown.transmission[channel] *= 1.0 - layer.coverage * (1.0 - layer.transmission[c]);
+    }
+  }
+  return shown;
+}
+
+Vec4 Picture::background(const Column& column) const {
+  if (column.opaque.face.solid < 0) return Vec4(0.0);
+  return {scene_.solids[static_cast<std::size_t>(column.opaque.face.solid)].colour, 1.0};
+}
+
+Vec4 Picture::at(const Column& column) const {
+  const Shown shown = shownBefore(column);
+  const Vec4 behind = background(column);
+  const double passed = (shown.transmission.r + shown.transmission.g + shown.transmission.b) / 3.0;
+  return {shown.over(Vec3(behind)), 1.0 - (1.0 - behind.a) * passed};
+}
+
+}  // namespace pellucid::reference
