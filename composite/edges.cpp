@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -56,15 +57,18 @@ class Finder {
     double off;    // how far the pixel's colour lies from it, as a part of the line's length
   };
   struct Beside {
-    Side other = Side::own;  // own: the neighbours lie on one surface
+    Side other = Side::own;  // own: none of the neighbours lies there
     bool mostlyOwn = false;  // of the 3 x 3 pixels more lie on the pixel's side of the edge
   };
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
   bool apart(int x, int y, int u, int v) const;
+  void markSteps();
   void markBesideEdges();
+  bool breaksBetween(int x, int y, int u, int v) const;
+  bool joined(int x, int y, int u, int v) const;
   Side sideOf(int x, int y, int u, int v) const;
-  Beside besideOf(int x, int y) const;
+  std::array<Beside, 2> besideOf(int x, int y) const;
   glm::dvec2 directionOf(int x, int y, Side other) const;
   std::optional<SideColour> unmixed(int x, int y, Side side) const;
   glm::dvec4 continued(int x, int y, Side side, const glm::dvec4& colour, glm::dvec2 offset) const;
@@ -73,12 +77,16 @@ class Finder {
   std::optional<Colours> coloursOf(int x, int y, Side other) const;
   std::optional<DepthPlane> planeOf(int x, int y, Side other) const;
   std::optional<EdgePixel> edgeAt(int x, int y) const;
+  std::optional<EdgePixel> edgeBeside(int x, int y, Side other, bool mostlyOwn) const;
 
   const GBuffer& gbuffer_;
   const DepthPlanes& planes_;
   int width_, height_;
+  Image<std::uint8_t> steps_;  // by bit, as kSteps: from the pixel to that neighbour the surface breaks off
   Image<std::uint8_t> besideEdge_;
 };
+
+constexpr int kSteps[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 
 bool Finder::apart(int x, int y, int u, int v) const {
   const bool here = hit(x, y), there = hit(u, v);
@@ -90,27 +98,59 @@ bool Finder::apart(int x, int y, int u, int v) const {
          std::abs(planes_.at(u, v).z(x - u, y - v) - z) > least;
 }
 
+void Finder::markSteps() {
+  steps_ = Image<std::uint8_t>(width_, height_, 0);
+  tbb::parallel_for(0, height_, [&](int y) {
+    for (int x = 0; x < width_; ++x)
+      for (int k = 0; k < 4; ++k) {
+        const int u = x + kSteps[k][0], v = y + kSteps[k][1];
+        if (inside(u, v) && apart(x, y, u, v)) steps_.at(x, y) |= static_cast<std::uint8_t>(1 << k);
+      }
+  });
+}
+
+// Of two pixels side by side.
+bool Finder::breaksBetween(int x, int y, int u, int v) const {
+  if (v < y || (v == y && u < x)) return breaksBetween(u, v, x, y);
+  const int k = v == y ? 0 : 2 + u - x;
+  return steps_.at(x, y) >> k & 1;
+}
+
 void Finder::markBesideEdges() {
   besideEdge_ = Image<std::uint8_t>(width_, height_, 0);
   tbb::parallel_for(0, height_, [&](int y) {
     for (int x = 0; x < width_; ++x)
       for (int v = y - 1; v <= y + 1 && !besideEdge_.at(x, y); ++v)
         for (int u = x - 1; u <= x + 1; ++u)
-          if (inside(u, v) && apart(x, y, u, v)) besideEdge_.at(x, y) = 1;
+          if (inside(u, v) && (u != x || v != y) && breaksBetween(x, y, u, v)) besideEdge_.at(x, y) = 1;
   });
+}
+
+// Whether the surface goes on from pixel to pixel along the line between two: where it bends, as towards the limb of a
+// ball, planes say nothing of pixels farther off.
+bool Finder::joined(int x, int y, int u, int v) const {
+  const int steps = std::max(std::abs(u - x), std::abs(v - y));
+  int fromX = x, fromY = y;
+  for (int i = 1; i <= steps; ++i) {
+    const int toX = x + (2 * (u - x) * i + (u < x ? -steps : steps)) / (2 * steps);
+    const int toY = y + (2 * (v - y) * i + (v < y ? -steps : steps)) / (2 * steps);
+    if (breaksBetween(fromX, fromY, toX, toY)) return false;
+    fromX = toX;
+    fromY = toY;
+  }
+  return true;
 }
 
 // On which side of pixel (x, y)'s surface another pixel lies.
 Side Finder::sideOf(int x, int y, int u, int v) const {
-  if ((u == x && v == y) || !apart(x, y, u, v)) return Side::own;
+  if ((u == x && v == y) || !apart(x, y, u, v) || joined(x, y, u, v)) return Side::own;
   if (!hit(x, y)) return Side::nearer;
   if (!hit(u, v)) return Side::farther;
   return static_cast<double>(gbuffer_.viewZ.at(u, v)) < planes_.at(x, y).z(u - x, v - y) ? Side::nearer : Side::farther;
 }
 
-// The other side is that on which more of the eight neighbours lie, those that share an edge with the pixel counting
-// twice.
-Finder::Beside Finder::besideOf(int x, int y) const {
+// First the side on which more of the eight neighbours lie, those that share an edge with the pixel counting twice.
+std::array<Finder::Beside, 2> Finder::besideOf(int x, int y) const {
   int weight[3] = {0, 0, 0}, count[3] = {0, 0, 0};
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) {
@@ -119,10 +159,14 @@ Finder::Beside Finder::besideOf(int x, int y) const {
       weight[side] += u == x || v == y ? 2 : 1;
       ++count[side];
     }
-  const auto nearer = static_cast<std::size_t>(Side::nearer), farther = static_cast<std::size_t>(Side::farther);
-  if (weight[nearer] == 0 && weight[farther] == 0) return {};
-  const std::size_t other = weight[nearer] >= weight[farther] ? nearer : farther;
-  return {static_cast<Side>(other), 2 * count[other] < count[0] + count[1] + count[2]};
+  const auto besideAt = [&](Side side) {
+    const auto other = static_cast<std::size_t>(side);
+    return weight[other] == 0 ? Beside() : Beside{side, 2 * count[other] < count[0] + count[1] + count[2]};
+  };
+  const Beside nearer = besideAt(Side::nearer), farther = besideAt(Side::farther);
+  const bool nearerFirst =
+      weight[static_cast<std::size_t>(Side::nearer)] >= weight[static_cast<std::size_t>(Side::farther)];
+  return nearerFirst ? std::array<Beside, 2>{nearer, farther} : std::array<Beside, 2>{farther, nearer};
 }
 
 // Across the edge towards the nearer surface: the moment of what lies on it in 5 x 5 pixels.
@@ -249,9 +293,15 @@ std::optional<Finder::Mixture> Finder::mixtureOf(const glm::dvec4& colour, const
 }
 
 std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
-  const auto [other, mostlyOwn] = besideOf(x, y);
+  if (!finiteColour(gbuffer_.beauty.at(x, y))) return std::nullopt;
+  for (const auto& [other, mostlyOwn] : besideOf(x, y))
+    if (other != Side::own)
+      if (const std::optional<EdgePixel> edge = edgeBeside(x, y, other, mostlyOwn)) return edge;
+  return std::nullopt;
+}
+
+std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostlyOwn) const {
   const glm::dvec4 colour(gbuffer_.beauty.at(x, y));
-  if (other == Side::own || !finiteColour(gbuffer_.beauty.at(x, y))) return std::nullopt;
   const std::optional<Colours> colours = coloursOf(x, y, other);
   const std::optional<Mixture> mixture = colours ? mixtureOf(colour, *colours) : std::nullopt;
   if (!mixture) return std::nullopt;
@@ -272,6 +322,7 @@ std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
 }
 
 std::vector<EdgePixel> Finder::find() {
+  markSteps();
   markBesideEdges();
   std::vector<std::vector<EdgePixel>> rows(static_cast<std::size_t>(height_));
   tbb::parallel_for(0, height_, [&](int y) {

@@ -32,15 +32,15 @@ void drawDepth(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
 
 void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
   if (scene.oneColour) {
-    static constexpr const char* kMeans[] = {"over", "phenomenological", "weighted", "front+tail", "mlab:4", "wavelet:2"};
+    static constexpr const char* kMeans[] = {"over",       "phenomenological", "weighted",
+                                             "front+tail", "mlab:4",           "wavelet:2"};
     flags.method = oneOf(random, kMeans);
   }
-  if (flags.method != "over" || chance(random, 0.5)) flags.words.push_back("--method=" + flags.method);
   const bool hasExact = flags.method == "over" || flags.method == "phenomenological";
-  if (hasExact && chance(random, 0.4)) {
-    flags.tier = "exact";
-    flags.words.push_back("--precision=exact");
-  }
+  const bool exact = hasExact && chance(random, 0.4);
+  // Precision by itself asks for the sums.
+  if (exact || flags.method != "over" || chance(random, 0.5)) flags.words.push_back("--method=" + flags.method);
+  if (exact) flags.words.emplace_back("--precision=exact");
   static constexpr const char* kWeights[] = {"auto", "power:2", "eq7", "uniform"};
   if (flags.method == "phenomenological" || flags.method == "weighted")
     flags.words.push_back(std::string("--weight=") + oneOf(random, kWeights));

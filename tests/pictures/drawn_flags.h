@@ -12,9 +12,9 @@ struct DrawnFlags {
   int passes = 8;
   reference::PixelWeights filter;
   OpaqueForm form;
-  bool edges = true;      // filtered edges are taken apart
-  bool softMask = true;   // rims of masks are as wide as a sample
-  std::string method = "over", tier = "float";
+  bool edges = true;     // filtered edges are taken apart
+  bool softMask = true;  // rims of masks are as wide as a sample
+  std::string method = "over";
   // Largest relative step of the depth that the file holds, as gbuffer/README.md states it.
   double depthStep() const { return form.half ? 0x1p-10 : 0x1p-20; }
 };

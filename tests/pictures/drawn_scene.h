@@ -30,7 +30,7 @@ struct StoredTexture {
 
 struct DrawnScene {
   std::string kind;
-  double size = 1.0;  // metres: how far away things are
+  double size = 1.0;       // metres: how far away things are
   bool oneColour = false;  // all coats show the same: then every mean of layers is their colour
   std::vector<PlacedMesh> placed;
   std::vector<StoredTexture> stored;

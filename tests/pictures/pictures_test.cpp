@@ -15,7 +15,8 @@ TEST(Pictures, AHundredAreRight) {
     const Trial trial{sceneKinds()[i % sceneKinds().size()], i};
     outcomes.push_back(runTrial(trial, folder, kept));
     EXPECT_TRUE(outcomes.back().right()) << trial.kind << " " << trial.seed << ": " << outcomes.back().refusal
-                                         << outcomes.back().worst << "\n" << slurp(folder + "/command");
+                                         << outcomes.back().worst << "\n"
+                                         << slurp(folder + "/command");
   }
   std::printf("%s", tableOf(outcomes).c_str());
 }

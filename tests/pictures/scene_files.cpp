@@ -37,10 +37,8 @@ class GlbFile {
   template <class T>
   std::size_t accessor(const std::vector<T>& values, int componentType, const char* type) {
     const std::string bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-    root["accessors"].push_back({{"bufferView", view(bytes)},
-                                 {"componentType", componentType},
-                                 {"count", values.size()},
-                                 {"type", type}});
+    root["accessors"].push_back(
+        {{"bufferView", view(bytes)}, {"componentType", componentType}, {"count", values.size()}, {"type", type}});
     return root["accessors"].size() - 1;
   }
   void write(const std::string& path) {
@@ -155,12 +153,10 @@ void writeScene(const std::string& path, const DrawnScene& scene) {
   for (const PlacedMesh& placed : scene.placed) roots.push_back(addMesh(placed, file));
   const reference::Eye& eye = scene.numbers.eye;
   if (eye.parallel)
-    file.root["cameras"] = {{{"type", "orthographic"},
-                             {"orthographic",
-                              {{"xmag", eye.half.x},
-                               {"ymag", eye.half.y},
-                               {"znear", 1e-3 * scene.size},
-                               {"zfar", 100.0 * scene.size}}}}};
+    file.root["cameras"] = {
+        {{"type", "orthographic"},
+         {"orthographic",
+          {{"xmag", eye.half.x}, {"ymag", eye.half.y}, {"znear", 1e-3 * scene.size}, {"zfar", 100.0 * scene.size}}}}};
   else
     file.root["cameras"] = {{{"type", "perspective"},
                              {"perspective",

@@ -73,7 +73,8 @@ Sheet gridSheet(Random& random, int across, double half, double bumps) {
   for (int j = 0; j <= across; ++j)
     for (int i = 0; i <= across; ++i) {
       const Vec2 at(static_cast<double>(i) / across, static_cast<double>(j) / across);
-      sheet.points.emplace_back((2.0 * at.x - 1.0) * half, (2.0 * at.y - 1.0) * half, bumps * random.between(-1.0, 1.0));
+      sheet.points.emplace_back((2.0 * at.x - 1.0) * half, (2.0 * at.y - 1.0) * half,
+                                bumps * random.between(-1.0, 1.0));
       sheet.uv.emplace_back(at.x, 1.0 - at.y);
     }
   for (int j = 0; j < across; ++j)
@@ -133,9 +134,9 @@ Vec3 SceneMaker::at(double x, double y, double z) const {
 }
 
 int SceneMaker::plane(const Vec3& point, const Vec3& normal) {
-  scene_.numbers.solids.push_back({reference::Plane{Vec3(worldFromEye_ * Vec4(point, 1.0)),
-                                                    glm::dmat3(worldFromEye_) * normal},
-                                   drawnColour(random_)});
+  scene_.numbers.solids.push_back(
+      {reference::Plane{Vec3(worldFromEye_ * Vec4(point, 1.0)), glm::dmat3(worldFromEye_) * normal},
+       drawnColour(random_)});
   return static_cast<int>(scene_.numbers.solids.size()) - 1;
 }
 int SceneMaker::ball(const Vec3& centre, double radius) {
@@ -164,6 +165,8 @@ reference::Coat SceneMaker::drawnCoat() {
 
 PlacedMesh& SceneMaker::place(const Sheet& sheet, const Vec3& origin, const glm::dmat3& axes, bool baked) {
   PlacedMesh mesh;
+  // So far out floats do not hold shapes of this size.
+  baked = baked && glm::length(scene_.numbers.eye.at) < 100.0 * scene_.size;
   glm::dmat4 worldFromSheet(axes);
   worldFromSheet[3] = glm::dvec4(origin, 1.0);
   worldFromSheet = worldFromEye_ * worldFromSheet;

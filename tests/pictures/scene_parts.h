@@ -23,9 +23,9 @@ struct Sheet {
   std::vector<std::array<int, 3>> triangles;
 };
 Sheet quadSheet(double halfWidth, double halfHeight);
-Sheet polygonSheet(Random& random, double radius);                        // a fan about its middle
-Sheet gridSheet(Random& random, int across, double half, double bumps);   // bumps out of its plane
-Sheet ballSheet(int across, double radius);                               // closed
+Sheet polygonSheet(Random& random, double radius);                       // a fan about its middle
+Sheet gridSheet(Random& random, int across, double half, double bumps);  // bumps out of its plane
+Sheet ballSheet(int across, double radius);                              // closed
 
 class SceneMaker {
  public:

@@ -67,8 +67,7 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
 }
 
 Vec4 Statements::colourOf(const Face& face) const {
-  return face.solid < 0 ? Vec4(0.0)
-                        : Vec4(picture_.scene().solids[static_cast<std::size_t>(face.solid)].colour, 1.0);
+  return face.solid < 0 ? Vec4(0.0) : Vec4(picture_.scene().solids[static_cast<std::size_t>(face.solid)].colour, 1.0);
 }
 
 Vec4 Statements::valueOf(const Shown& shown, const Vec4& behind) const {
@@ -101,14 +100,23 @@ double Statements::marginAt(const Column& column) const {
 
 void Statements::eachCut(const Column& column, const Face& face, double nearest, double farthest,
                          const std::function<void(const Shown&)>& take) const {
+  Column loose = column;
+  bool any = false;
+  for (reference::Crossing& crossing : loose.crossings) {
+    if (face.solid < 0) break;
+    // Floats do not keep it on its face to the precision of the depth.
+    if (!(crossing.on == face) || rounding_ * crossing.steep < 0.25 * flags_.depthStep() * crossing.layer.z) continue;
+    crossing.on = Face();
+    any = true;
+  }
+  if (any) eachCut(loose, face, nearest, farthest, take);
   take(reference::Picture::shownBefore(column, face, nearest));
   take(reference::Picture::shownBefore(column, face, farthest));
   for (std::size_t i = 0; i < column.crossings.size(); ++i) {
     const reference::Crossing& crossing = column.crossings[i];
     const double off = rounding_ * crossing.steep, z = crossing.layer.z;
     if (z + off > nearest && z - off < farthest)
-      for (const double cut : {z - 2.0 * off, z + 2.0 * off})
-        take(reference::Picture::shownBefore(column, face, cut));
+      for (const double cut : {z - 2.0 * off, z + 2.0 * off}) take(reference::Picture::shownBefore(column, face, cut));
     if (i == 0 || z - column.crossings[i - 1].layer.z > off + rounding_ * column.crossings[i - 1].steep) continue;
     Column other = column;  // which of the two is nearer floats do not tell
     std::swap(other.crossings[i - 1], other.crossings[i]);
@@ -147,20 +155,19 @@ Statements::Surroundings Statements::surroundingsOf(int x, int y) const {
   const auto& shape = picture_.scene().solids[static_cast<std::size_t>(face.solid)].shape;
   if (!std::holds_alternative<reference::Ball>(shape)) return around;
   for (int v = y - 1; v <= y + 1; ++v)
-    for (int u = x - 1; u <= x + 1; ++u)
-      around.onPlane = around.onPlane && inside(u, v) && centre(u, v) == face;
+    for (int u = x - 1; u <= x + 1; ++u) around.onPlane = around.onPlane && inside(u, v) && centre(u, v) == face;
   around.beside += 5.0 * flags_.depthStep();
   return around;
 }
 
 Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
-  Vec4 sum(0.0), low(0.0), high(0.0);
+  Vec4 sum(0.0), squares(0.0), low(0.0), high(0.0);
   const Face& face = centre(x, y);
   const Vec4 behind(beauty_.at(x, y));
   const double step = flags_.depthStep(), reach = std::max(1.0, 2.0 * flags_.filter.radius);
-  const bool flat = face.solid < 0 || reference::depthOfPlane(picture_.scene(), face,
-                                                              reference::rayThrough(picture_.scene().eye, x + 0.5,
-                                                                                    y + 0.5));
+  const bool flat =
+      face.solid < 0 ||
+      reference::depthOfPlane(picture_.scene(), face, reference::rayThrough(picture_.scene().eye, x + 0.5, y + 0.5));
   const double bend = flat || flags_.passes == 1 ? 0.0 : bendOf(x, y);
   for (const glm::dvec2& place : places_) {
     const Vec2 at = Vec2(x, y) + place;
@@ -175,15 +182,17 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
     for (const Vec2 off : {Vec2(0, 0), Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)}) {
       const Column column = off == Vec2(0, 0) ? here : picture_.columnAt(at.x + margin * off.x, at.y + margin * off.y);
       const double z = depthOf(column), farther = (2.0 * step + around.beside) * reach * z + bend;
-      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend,
-               z == kNothing ? z : z + farther, behind, range);
+      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend, z == kNothing ? z : z + farther,
+               behind, range);
     }
     sum += nominal;
+    squares += nominal * nominal;
     low += range.low;
     high += range.high;
   }
   const double count = static_cast<double>(places_.size());
-  Statement statement{Judged::inner, sum / count, Vec4(0.0)};
+  Statement statement{Judged::inner, sum / count, Vec4(0.0), Vec4(0.0)};
+  statement.variance = glm::max(squares / count - statement.right * statement.right, Vec4(0.0));
   const double brightest = std::max({1.0, high.r / count, high.g / count, high.b / count});
   statement.allowed = glm::max(high / count - statement.right, statement.right - low / count) + kRounding * brightest;
   return statement;
@@ -198,9 +207,11 @@ Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
     weights += weight;
     weightSquares += weight * weight;
   });
-  const Vec4 mean = sum / weights, variance = glm::max(squares / weights - mean * mean, Vec4(0.0));
+  const Vec4 mean = sum / weights;
+  // What is smaller than the distance of places is met by the passes or by these, and by chance.
+  const Vec4 variance = glm::max(squares / weights - mean * mean, inner.variance);
   const double noise = 1.0 / flags_.passes + weightSquares / (weights * weights);
-  return {Judged::filtered, mean, inner.allowed + 2.0 * glm::sqrt(variance * noise)};
+  return {Judged::filtered, mean, inner.allowed + 3.0 * glm::sqrt(variance * noise), variance};
 }
 
 std::vector<Statement> Statements::of(int x, int y) const {

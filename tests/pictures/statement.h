@@ -12,7 +12,7 @@ namespace pellucid::test {
 // How a pixel is judged, by what is opaque under its filter.
 enum class Judged {
   inner,     // one face: what the passes' own rays see, but for roundings of place and depth
-  filtered,  // of these, that the passes stand for the filter: 2 standard errors of their places
+  filtered,  // of these, that the passes stand for the filter: 3 standard errors of as many places
   edge,      // two faces whose colours the picture tells apart: their veils may be mixed by nothing but their shares
   mixed,     // whatever else: any mixture of what is seen under the filter
   count
@@ -20,6 +20,7 @@ enum class Judged {
 struct Statement {
   Judged judged = Judged::inner;
   reference::Vec4 right{0.0}, allowed{0.0};  // R, G, B, A
+  reference::Vec4 variance{0.0};             // among the passes
   // The largest error as a part of what is allowed.
   double error(const reference::Vec4& value) const;
 };

@@ -46,12 +46,15 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
       if (inside(u, v) && !(centre(u, v) == own) && !(centre(u, v) == other)) return std::nullopt;
   const auto rayAt = [&](int u, int v) { return reference::rayThrough(picture_.scene().eye, u + 0.5, v + 0.5); };
   bool beside = false;
+  double firstFarther = 0.0;
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) {
       const auto one = reference::depthOfPlane(picture_.scene(), own, rayAt(u, v));
       const auto two = reference::depthOfPlane(picture_.scene(), other, rayAt(u, v));
       if (!one || !two) return std::nullopt;
       if (std::abs(*one - *two) < kApart * std::min(*one, *two)) return std::nullopt;
+      if (firstFarther * (*two - *one) < 0.0) return std::nullopt;  // they meet there
+      firstFarther = *two > *one ? 1.0 : -1.0;
       beside = beside || centre(u, v) == other;
     }
   double impurity = 0.0;
@@ -74,8 +77,10 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
   });
   const double part = shares[0] / (shares[0] + shares[1]);
   if (part < 0.5) return std::nullopt;  // a corner, or a thing narrower than the pixel
-  const double astray = kNoShare + 4.0 * impurity / contrast;
-  Statement statement{Judged::edge, samples_.mean(x, y, &Sampled::value), Vec4(kRounding)};
+  // A half is off by 2^-12 of itself, and by so much colours do not tell the shares.
+  const double stored = flags_.form.half ? 0x1p-11 * (glm::length(ownColour) + glm::length(otherColour)) : 0.0;
+  const double astray = kNoShare + 4.0 * (impurity + stored) / contrast;
+  Statement statement{Judged::edge, samples_.mean(x, y, &Sampled::value), Vec4(kRounding + stored), {}};
   statement.allowed += part * (ranges[0].high - ranges[0].low) + (1.0 - part) * (ranges[1].high - ranges[1].low) +
                        astray * (glm::max(ranges[0].high, ranges[1].high) - glm::min(ranges[0].low, ranges[1].low));
   return statement;
@@ -113,7 +118,7 @@ Statement Statements::mixedAt(int x, int y) const {
   Range all;
   all.take(with(light.low, passed.low));
   all.take(with(light.high, passed.high));
-  Statement statement{Judged::mixed, 0.5 * (all.low + all.high), 0.5 * (all.high - all.low) + kRounding};
+  Statement statement{Judged::mixed, 0.5 * (all.low + all.high), 0.5 * (all.high - all.low) + kRounding, {}};
   return statement;
 }
 

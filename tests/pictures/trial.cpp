@@ -20,6 +20,10 @@ using reference::Vec4;
 constexpr int kPlacesAcross = 12;  // of the reference, along each edge of a pixel
 constexpr const char* kJudged[] = {"inner", "filtered", "edge", "mixed"};
 
+std::uint64_t seedOf(const Trial& trial) {
+  return trial.seed * 0x5851f42d4c957f2dull + 0x2545f4914f6cdd1dull;  // far apart in one sequence
+}
+
 Request requestOf(const std::vector<std::string>& words) {
   CLI::App verb("", "composite");
   cli::CompositeFlags flags;
@@ -96,8 +100,34 @@ bool Outcome::right() const {
   return refusal.empty() && worst.empty();
 }
 
+std::string raysOf(const Trial& trial, int x, int y) {
+  Random random(seedOf(trial));
+  const DrawnScene scene = drawScene(trial.kind, random);
+  const DrawnFlags flags = drawFlags(scene, random);
+  const reference::Picture picture(scene.numbers);
+  PixelFilter filter = parsePixelFilter(fmt::format("{}:{}", flags.filter.shape, flags.filter.radius));
+  std::string told = commandOf(flags) + "\n";
+  for (std::size_t m = 0; m < scene.placed.size(); ++m) {
+    const reference::Coat& coat = scene.placed[m].coat;
+    told += fmt::format("mesh {}: {} triangles, alpha {}, on {}, {} nodes, both sides {}\n", m,
+                        scene.placed[m].triangles.size(), coat.colour.a, scene.placed[m].on.solid,
+                        scene.placed[m].nodes.size(), coat.bothSides);
+  }
+  for (int i = 0; i < flags.passes; ++i) {
+    const glm::dvec2 place = samplePosition(i, flags.passes, filter);
+    const reference::Column column = picture.columnAt(x + place.x, y + place.y);
+    told += fmt::format("({:.4f}, {:.4f}): opaque {}.{} at {:.9g};", x + place.x, y + place.y, column.opaque.face.solid,
+                        column.opaque.face.side, column.opaque.z);
+    for (const reference::Crossing& crossing : column.crossings)
+      told += fmt::format(" mesh {} covers {:.4f} at {:.9g}{}", crossing.mesh, crossing.layer.coverage,
+                          crossing.layer.z, crossing.on.solid < 0 ? "" : " on it");
+    told += "\n";
+  }
+  return told;
+}
+
 Outcome runTrial(const Trial& trial, const std::string& folder, const std::shared_ptr<KeptWork>& kept) {
-  Random random(trial.seed);
+  Random random(seedOf(trial));
   const DrawnScene scene = drawScene(trial.kind, random);
   const DrawnFlags flags = drawFlags(scene, random);
   const reference::Picture picture(scene.numbers);
@@ -114,8 +144,7 @@ Outcome runTrial(const Trial& trial, const std::string& folder, const std::share
     Compositor compositor(request, nullptr, nullptr, kept);
     const Result result = compositor.run(request);
     std::vector<glm::dvec2> places;
-    for (int i = 0; i < flags.passes; ++i)
-      places.push_back(samplePosition(i, flags.passes, result.plan.pixelFilter));
+    for (int i = 0; i < flags.passes; ++i) places.push_back(samplePosition(i, flags.passes, result.plan.pixelFilter));
     const Statements statements(scene, picture, samples, flags, compositor.shot().opaque.gbuffer.beauty, places);
     const Image<Statement> right = judge(statements, result.picture.rgba, outcome);
     if (outcome.right()) return outcome;

@@ -15,7 +15,7 @@ namespace pellucid::test {
 // Of pixels of one sort.
 struct Tally {
   std::size_t pixels = 0, beyond = 0;
-  double worst = 0.0;  // the largest error as a part of what is stated
+  double worst = 0.0;    // the largest error as a part of what is stated
   double largest = 0.0;  // of any channel, whatever is stated
   void add(const Tally& other);
 };
@@ -36,6 +36,9 @@ struct Trial {
 // Draws into `folder`, which keeps opaque.exr, glass.glb and, where the picture differs, `command`, right.exr with what
 // is right and what is allowed, and out.exr.
 Outcome runTrial(const Trial& trial, const std::string& folder, const std::shared_ptr<KeptWork>& kept);
+
+// What the rays of the passes meet in a pixel, by the reference: to look for the cause of a difference.
+std::string raysOf(const Trial& trial, int x, int y);
 
 // Row by row: kind, pictures, and of every sort of pixels how many, the worst error over what is stated, and how many
 // are beyond it.

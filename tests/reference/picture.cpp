@@ -93,7 +93,7 @@ Column Picture::columnAt(double x, double y) const {
       const auto within = meet(column.ray, corner(0), corner(1), corner(2));
       if (!within || !(within->facing < 0.0 || mesh.coat.bothSides)) continue;
       if (const auto layer = layerOf(scene_, mesh, triangle, *within))
-        column.crossings.push_back({*layer, 1.0 / std::abs(within->facing), mesh.on});
+        column.crossings.push_back({*layer, 1.0 / std::abs(within->facing), mesh.on, static_cast<int>(m)});
     }
   }
   std::sort(column.crossings.begin(), column.crossings.end(),

@@ -13,6 +13,7 @@ struct Crossing {
   Layer layer;         // with its planar depth
   double steep = 1.0;  // how much farther the ray goes for a metre across the surface, at least 1
   Face on;             // Mesh::on
+  int mesh = -1;
 };
 // Everything on one ray.
 struct Column {

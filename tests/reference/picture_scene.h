@@ -14,8 +14,8 @@ using Vec4 = glm::dvec4;
 
 struct Eye {
   Vec3 at{0.0};
-  glm::dmat3 axes{1.0};    // columns: right, up, backwards; orthonormal
-  Vec2 half{0.5, 0.5};     // half of the picture at distance 1, or in metres where rays are parallel
+  glm::dmat3 axes{1.0};  // columns: right, up, backwards; orthonormal
+  Vec2 half{0.5, 0.5};   // half of the picture at distance 1, or in metres where rays are parallel
   bool parallel = false;
   int width = 32, height = 24;
 };
@@ -59,8 +59,8 @@ struct Coat {
   Covering covering = Covering::blend;
   double cutoff = 0.5;
   bool bothSides = true;
-  int texture = -1;         // that multiplies the colour
-  glm::dmat3 fromUv{1.0};   // of texture coordinates
+  int texture = -1;        // that multiplies the colour
+  glm::dmat3 fromUv{1.0};  // of texture coordinates
 };
 
 struct Corner {

@@ -34,9 +34,7 @@ double PixelWeights::at(double x, double y) const {
 }
 
 Samples::Samples(const Picture& picture, const PixelWeights& weights, int perEdge)
-    : weights_(weights),
-      width_(picture.scene().eye.width),
-      margin_(static_cast<int>(std::ceil(weights.radius - 0.5))) {
+    : weights_(weights), width_(picture.scene().eye.width), margin_(static_cast<int>(std::ceil(weights.radius - 0.5))) {
   std::uint64_t seed = 0;
   for (int y = -margin_; y < picture.scene().eye.height + margin_; ++y)
     for (int x = -margin_; x < width_ + margin_; ++x) {

@@ -1,5 +1,6 @@
 // campaign_pictures FOLDER [COUNT [FIRST [KIND...]]]: COUNT random pictures, held against the reference. Prints every
 // picture that differs, and a table; what differs is kept in FOLDER. Ends with 1 when there is any.
+// campaign_pictures rays KIND SEED X Y: what the passes meet in a pixel.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -21,6 +22,11 @@ std::uint64_t numberOf(const std::string& text) {
 
 int run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) throw std::invalid_argument("found no folder for what differs");
+  if (arguments[0] == "rays" && arguments.size() == 5) {
+    const Trial trial{arguments[1], numberOf(arguments[2])};
+    fmt::print("{}", raysOf(trial, static_cast<int>(numberOf(arguments[3])), static_cast<int>(numberOf(arguments[4]))));
+    return 0;
+  }
   const std::uint64_t count = arguments.size() > 1 ? numberOf(arguments[1]) : 1000;
   const std::uint64_t first = arguments.size() > 2 ? numberOf(arguments[2]) : 0;
   const std::vector<std::string> kinds =
