@@ -54,6 +54,10 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
     for (int x = 0; x < centres_.width(); ++x)
       centres_.at(x, y) =
           reference::nearestSolid(picture.scene(), reference::rayThrough(picture.scene().eye, x + 0.5, y + 0.5));
+  // The square that a pass stands for is what the density of all of them at the filter's middle leaves to each.
+  for (const reference::Mesh& mesh : picture.scene().meshes)
+    if (mesh.coat.covering == reference::Covering::mask && flags.softMask)
+      band_ = std::max(1.0, 2.0 * flags.filter.radius) / std::sqrt(static_cast<double>(flags.passes));
   // A corner comes to the eye through one product of floats: as far as the mesh's origin lies from the eye, and the
   // corner from that origin.
   const reference::Eye& eye = picture.scene().eye;
@@ -84,18 +88,15 @@ double Statements::bendOf(int x, int y) const {
   return bend * std::max(1.0, 2.0 * flags_.filter.radius * flags_.filter.radius);
 }
 
-// Pixels by which floats move what a ray meets.
-double Statements::marginAt(const Column& column) const {
+// Pixels by which floats move what rays meet at the depths that lie in a pixel.
+double Statements::marginOf(const std::vector<Column>& columns) const {
   const reference::Eye& eye = picture_.scene().eye;
-  double z = std::min(0.5 * size_, column.opaque.z);
-  for (const reference::Crossing& crossing : column.crossings) z = std::min(z, crossing.layer.z);
-  const double metres = 2.0 * eye.half.x / eye.width * (eye.parallel ? 1.0 : z);
-  double margin = kPlace + rounding_ / metres;
-  for (const reference::Mesh& mesh : picture_.scene().meshes)
-    if (mesh.coat.covering == reference::Covering::mask && flags_.softMask)
-      // The rim of a mask is as wide as the square that one pass stands for, seen along its diagonal.
-      margin = std::max(margin, std::sqrt(0.5 / flags_.passes) * std::max(1.0, 2.0 * flags_.filter.radius));
-  return margin;
+  double z = 0.5 * size_;
+  for (const Column& column : columns) {
+    z = std::min(z, column.opaque.z);
+    for (const reference::Crossing& crossing : column.crossings) z = std::min(z, crossing.layer.z);
+  }
+  return kPlace + rounding_ * eye.width / (2.0 * eye.half.x * (eye.parallel ? 1.0 : z));
 }
 
 void Statements::eachCut(const Column& column, const Face& face, double nearest, double farthest,
@@ -169,22 +170,27 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
       face.solid < 0 ||
       reference::depthOfPlane(picture_.scene(), face, reference::rayThrough(picture_.scene().eye, x + 0.5, y + 0.5));
   const double bend = flat || flags_.passes == 1 ? 0.0 : bendOf(x, y);
-  for (const glm::dvec2& place : places_) {
-    const Vec2 at = Vec2(x, y) + place;
-    const Column here = picture_.columnAt(at.x, at.y);
-    const auto depthOf = [&](const Column& column) {
-      return flat ? reference::depthOfPlane(picture_.scene(), face, column.ray).value_or(kNothing) : column.opaque.z;
-    };
-    const Vec4 nominal = valueOf(reference::Picture::shownBefore(here, face, depthOf(here)), behind);
+  std::vector<Column> columns;
+  for (const glm::dvec2& place : places_) columns.push_back(picture_.columnAt(x + place.x, y + place.y));
+  const double margin = marginOf(columns);
+  const auto depthOf = [&](const Column& column) {
+    return flat ? reference::depthOfPlane(picture_.scene(), face, column.ray).value_or(kNothing) : column.opaque.z;
+  };
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Vec2 at = Vec2(x, y) + places_[i];
+    const Vec4 nominal = valueOf(reference::Picture::shownBefore(columns[i], face, depthOf(columns[i])), behind);
     Range range;
     range.take(nominal);
-    const double margin = marginAt(here);
-    for (const Vec2 off : {Vec2(0, 0), Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)}) {
-      const Column column = off == Vec2(0, 0) ? here : picture_.columnAt(at.x + margin * off.x, at.y + margin * off.y);
+    const auto take = [&](const Column& column) {
       const double z = depthOf(column), farther = (2.0 * step + around.beside) * reach * z + bend;
-      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend, z == kNothing ? z : z + farther,
-               behind, range);
-    }
+      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend,
+               z == kNothing ? z : z + farther, behind, range);
+    };
+    take(columns[i]);
+    for (const Vec2 off : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)})
+      take(picture_.columnAt(at.x + margin * off.x, at.y + margin * off.y));
+    if (band_ > 0.0)
+      for (const int side : {-1, 1}) take(picture_.columnAt(at.x, at.y, {band_, side}));
     sum += nominal;
     squares += nominal * nominal;
     low += range.low;

@@ -48,7 +48,7 @@ class Statements {
   Surroundings surroundingsOf(int x, int y) const;
   reference::Vec4 valueOf(const reference::Shown& shown, const reference::Vec4& behind) const;
   double bendOf(int x, int y) const;
-  double marginAt(const reference::Column& column) const;
+  double marginOf(const std::vector<reference::Column>& columns) const;
   // What is shown where the face lies between two depths.
   void eachCut(const reference::Column& column, const reference::Face& face, double nearest, double farthest,
                const std::function<void(const reference::Shown&)>& take) const;
@@ -70,6 +70,7 @@ class Statements {
   std::vector<glm::dvec2> places_;
   Image<reference::Met> centres_;
   double rounding_ = 0.0;  // of positions as floats hold them, metres
+  double band_ = 0.0;      // edge of the square that rims of masks are as wide as, pixels; 0: as sharp as a ray
   double size_;
 };
 

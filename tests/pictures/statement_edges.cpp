@@ -95,7 +95,12 @@ Statement Statements::mixedAt(int x, int y) const {
     nearest = std::min(nearest, 0.9 * met.z);
     farthest = std::max(farthest, 1.1 * met.z);
   };
-  samples_.under(x, y, [&](const Sampled& sample, double) { meet(sample.opaque); });
+  samples_.under(x, y, [&](const Sampled& sample, double) {
+    meet(sample.opaque);
+    // The pixel's own surface goes on beyond where it ends, for passes that take the pixel for one surface.
+    const reference::Ray ray = reference::rayThrough(picture_.scene().eye, sample.x, sample.y);
+    if (!flags_.edges) meet({reference::depthOfPlane(picture_.scene(), centre(x, y), ray).value_or(kNothing), centre(x, y)});
+  });
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u)
       if (inside(u, v)) meet(centres_.at(u, v));

@@ -15,44 +15,40 @@ struct Within {
   double facing;  // cosine between ray and normal, below 0 from the front
 };
 
-// By the volumes that the ray spans with the edges: all of one sign where it passes between them.
-std::optional<Within> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 p = a - ray.from, q = b - ray.from, r = c - ray.from;
-  const Vec3 volumes(glm::dot(ray.along, glm::cross(q, r)), glm::dot(ray.along, glm::cross(r, p)),
-                     glm::dot(ray.along, glm::cross(p, q)));
+// The volumes that a ray spans with a triangle's edges.
+Vec3 volumesOf(const Ray& ray, const Vec3 (&corners)[3]) {
+  const Vec3 p = corners[0] - ray.from, q = corners[1] - ray.from, r = corners[2] - ray.from;
+  return {glm::dot(ray.along, glm::cross(q, r)), glm::dot(ray.along, glm::cross(r, p)),
+          glm::dot(ray.along, glm::cross(p, q))};
+}
+
+// All of them have one sign where the ray passes between the edges.
+std::optional<Within> meet(const Ray& ray, const Vec3 (&corners)[3]) {
+  const Vec3 volumes = volumesOf(ray, corners);
   const bool above = volumes.x > 0.0 && volumes.y > 0.0 && volumes.z > 0.0;
   const bool below = volumes.x < 0.0 && volumes.y < 0.0 && volumes.z < 0.0;
   if (!above && !below) return std::nullopt;
-  const Vec3 shares = volumes / (volumes.x + volumes.y + volumes.z);
-  const Vec3 normal = glm::cross(q - p, r - p);
-  const double z = glm::dot(normal, p) / glm::dot(normal, ray.along);
+  const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double z = glm::dot(normal, corners[0] - ray.from) / glm::dot(normal, ray.along);
   if (!(z > 0.0)) return std::nullopt;
-  return Within{shares, z, glm::dot(normal, ray.along) / (glm::length(normal) * glm::length(ray.along))};
+  return Within{volumes / (volumes.x + volumes.y + volumes.z), z,
+                glm::dot(normal, ray.along) / (glm::length(normal) * glm::length(ray.along))};
 }
 
-// Straight colour of a coat, and how much of the place it covers.
-std::optional<Layer> layerOf(const PictureScene& scene, const Mesh& mesh, const std::array<int, 3>& triangle,
-                             const Within& within) {
+// Straight colour of a coat.
+Vec4 colourOf(const PictureScene& scene, const Mesh& mesh, const std::array<int, 3>& triangle, const Vec3& shares) {
   Vec2 uv(0.0);
   Vec4 colour(0.0);
   for (int k = 0; k < 3; ++k) {
     const Corner& corner = mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
-    uv += within.shares[k] * corner.uv;
-    colour += within.shares[k] * corner.colour;
+    uv += shares[k] * corner.uv;
+    colour += shares[k] * corner.colour;
   }
   const Coat& coat = mesh.coat;
   colour *= coat.colour;
   if (coat.texture >= 0)
     colour *= texelAt(scene.textures[static_cast<std::size_t>(coat.texture)], Vec2(coat.fromUv * Vec3(uv, 1.0)));
-  const double covered = coat.covering == Covering::blend ? std::clamp(colour.a, 0.0, 1.0)
-                         : colour.a >= coat.cutoff        ? 1.0
-                                                          : 0.0;
-  if (!(covered > 0.0)) return std::nullopt;
-  Layer layer;
-  layer.coverage = covered;
-  layer.reflected = {colour.r, colour.g, colour.b};
-  layer.z = within.z;
-  return layer;
+  return colour;
 }
 
 }  // namespace
@@ -79,7 +75,7 @@ Picture::Bounds Picture::boundsOf(const Mesh& mesh, const std::array<int, 3>& tr
   return {bounds.x0 - margin, bounds.y0 - margin, bounds.x1 + margin, bounds.y1 + margin};
 }
 
-Column Picture::columnAt(double x, double y) const {
+Column Picture::columnAt(double x, double y, const CutBand& band) const {
   Column column;
   column.ray = rayThrough(scene_.eye, x, y);
   column.opaque = nearestSolid(scene_, column.ray);
@@ -90,10 +86,28 @@ Column Picture::columnAt(double x, double y) const {
       if (x < in.x0 || x > in.x1 || y < in.y0 || y > in.y1) continue;
       const auto& triangle = mesh.triangles[t];
       const auto corner = [&](std::size_t k) { return mesh.corners[static_cast<std::size_t>(triangle[k])].at; };
-      const auto within = meet(column.ray, corner(0), corner(1), corner(2));
+      const Vec3 corners[3] = {corner(0), corner(1), corner(2)};
+      const auto within = meet(column.ray, corners);
       if (!within || !(within->facing < 0.0 || mesh.coat.bothSides)) continue;
-      if (const auto layer = layerOf(scene_, mesh, triangle, *within))
-        column.crossings.push_back({*layer, 1.0 / std::abs(within->facing), mesh.on, static_cast<int>(m)});
+      const Vec4 colour = colourOf(scene_, mesh, triangle, within->shares);
+      double covered = std::clamp(colour.a, 0.0, 1.0);
+      if (mesh.coat.covering == Covering::mask) {
+        const auto alphaAt = [&](double u, double v) {
+          const Vec3 volumes = volumesOf(rayThrough(scene_.eye, u, v), corners);
+          return colourOf(scene_, mesh, triangle, volumes / (volumes.x + volumes.y + volumes.z)).a;
+        };
+        const auto change = [&](double dx, double dy) {
+          return std::max(std::abs(alphaAt(x + dx, y + dy) - colour.a), std::abs(alphaAt(x - dx, y - dy) - colour.a));
+        };
+        const double half = band.side == 0 ? 0.0 : 0.5 * band.edge * (change(1.0, 0.0) + change(0.0, 1.0));
+        covered = colour.a + band.side * half >= mesh.coat.cutoff ? 1.0 : 0.0;
+      }
+      if (!(covered > 0.0)) continue;
+      Crossing crossing{{}, 1.0 / std::abs(within->facing), mesh.on, static_cast<int>(m)};
+      crossing.layer.coverage = covered;
+      crossing.layer.reflected = {colour.r, colour.g, colour.b};
+      crossing.layer.z = within->z;
+      column.crossings.push_back(crossing);
     }
   }
   std::sort(column.crossings.begin(), column.crossings.end(),

@@ -21,6 +21,12 @@ struct Column {
   Met opaque;
   std::vector<Crossing> crossings;  // nearest first, those behind what is opaque as well
 };
+// Masks are cut as if alpha were higher (side 1) or lower (-1) by half of what it changes by, along both axes of the
+// picture, over a part of a pixel: where a rim is drawn as a ramp, it lies in between.
+struct CutBand {
+  double edge = 0.0;  // that part
+  int side = 0;
+};
 // What layers do to the background.
 struct Shown {
   Vec3 light{0.0}, transmission{1.0};
@@ -32,7 +38,7 @@ class Picture {
  public:
   explicit Picture(const PictureScene& scene);
   const PictureScene& scene() const { return scene_; }
-  Column columnAt(double x, double y) const;
+  Column columnAt(double x, double y, const CutBand& band = {}) const;
   // What is shown of an opaque face that lies at depth z: what lies on it is in front.
   static Shown shownBefore(const Column& column, const Face& face, double z);
   static Shown shownBefore(const Column& column) { return shownBefore(column, column.opaque.face, column.opaque.z); }
