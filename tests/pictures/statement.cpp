@@ -19,6 +19,7 @@ using reference::Vec4;
 constexpr double kRounding = 1e-5;
 // Of a place in the picture, pixels: the rays of a pass are those of floats.
 constexpr double kPlace = 1e-4;
+constexpr double kWide = 0.01;    // of such a margin, pixels: within it more than one edge may lie
 constexpr int kNear = 5;  // pixels within which another face may touch the slope of this one
 
 }  // namespace
@@ -187,8 +188,9 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
                z == kNothing ? z : z + farther, behind, range);
     };
     take(columns[i]);
-    for (const Vec2 off : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)})
-      take(picture_.columnAt(at.x + margin * off.x, at.y + margin * off.y));
+    for (const double part : margin > kWide ? std::vector<double>{1.0, 0.6, 0.3} : std::vector<double>{1.0})
+      for (const Vec2 off : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)})
+        take(picture_.columnAt(at.x + part * margin * off.x, at.y + part * margin * off.y));
     if (band_ > 0.0)
       for (const int side : {-1, 1}) take(picture_.columnAt(at.x, at.y, {band_, side}));
     sum += nominal;

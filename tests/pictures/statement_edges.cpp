@@ -101,8 +101,9 @@ Statement Statements::mixedAt(int x, int y) const {
     const reference::Ray ray = reference::rayThrough(picture_.scene().eye, sample.x, sample.y);
     if (!flags_.edges) meet({reference::depthOfPlane(picture_.scene(), centre(x, y), ray).value_or(kNothing), centre(x, y)});
   });
-  for (int v = y - 1; v <= y + 1; ++v)
-    for (int u = x - 1; u <= x + 1; ++u)
+  // Where surfaces end the slope of each may be taken from its neighbours' to either side.
+  for (int v = y - 2; v <= y + 2; ++v)
+    for (int u = x - 2; u <= x + 2; ++u)
       if (inside(u, v)) meet(centres_.at(u, v));
   // Light and transmission apart: edges are taken apart with a weight for each.
   Range light, passed;
