@@ -26,8 +26,13 @@ void drawDepth(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
     flags.form.depthKind = oneOf(random, kKinds);
     flags.words.push_back("--depth-kind=" + flags.form.depthKind);
   }
-  // Of half floats below 2^-14 the steps are larger.
-  flags.form.half = chance(random, 0.4) && !(flags.form.depthKind == "inverse" && scene.size > 50.0);
+  if (chance(random, 0.1)) {
+    flags.form.metresPerUnit = 0.01;
+    flags.words.emplace_back("--unit=0.01");
+  }
+  // Halves below 2^-14 have larger steps, and none is above 65504.
+  const double unit = scene.size / flags.form.metresPerUnit;
+  flags.form.half = chance(random, 0.4) && unit < (flags.form.depthKind == "inverse" ? 50.0 : 1000.0);
 }
 
 void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
@@ -41,6 +46,7 @@ void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
   // Precision by itself asks for the sums.
   if (exact || flags.method != "over" || chance(random, 0.5)) flags.words.push_back("--method=" + flags.method);
   if (exact) flags.words.emplace_back("--precision=exact");
+  if (flags.method == "phenomenological" && chance(random, 0.3)) flags.words.emplace_back("--resolve=gl");
   static constexpr const char* kWeights[] = {"auto", "power:2", "eq7", "uniform"};
   if (flags.method == "phenomenological" || flags.method == "weighted")
     flags.words.push_back(std::string("--weight=") + oneOf(random, kWeights));
@@ -65,6 +71,7 @@ DrawnFlags drawFlags(const DrawnScene& scene, Random& random) {
     flags.softMask = false;
     flags.words.emplace_back("--mask=hard");
   }
+  if (chance(random, 0.2)) flags.words.emplace_back("--budget=1M");
   if (chance(random, 0.2)) flags.words.push_back(fmt::format("--order=shuffle:{}", random.below(100)));
   return flags;
 }

@@ -16,8 +16,9 @@ using reference::Vec2;
 using reference::Vec3;
 using reference::Vec4;
 
-float storedDepth(const reference::Column& column, const std::string& kind) {
-  const double z = column.opaque.z;
+float storedDepth(const reference::Column& column, const OpaqueForm& form) {
+  const std::string& kind = form.depthKind;
+  const double z = column.opaque.z / form.metresPerUnit;
   if (z == reference::kNothing) return kind == "inverse" ? 0.0f : std::numeric_limits<float>::infinity();
   if (kind == "ray") return static_cast<float>(z * glm::length(column.ray.along));
   if (kind == "inverse") return static_cast<float>(1.0 / z);
@@ -138,10 +139,11 @@ void writeOpaque(const std::string& path, const reference::Picture& picture, con
     for (int x = 0; x < eye.width; ++x) {
       const Vec4 colour = samples.mean(x, y, &reference::Sampled::background);
       for (int c = 0; c < 4; ++c) planes[static_cast<std::size_t>(c)].at(x, y) = static_cast<float>(colour[c]);
-      planes[4].at(x, y) = storedDepth(picture.columnAt(x + 0.5, y + 0.5), form.depthKind);
+      planes[4].at(x, y) = storedDepth(picture.columnAt(x + 0.5, y + 0.5), form);
     }
-  const Window window{0, 0, eye.width, eye.height};
-  writeLayers(path, window, window,
+  const Window display{0, 0, eye.displayWidth, eye.displayHeight};
+  const Window data{eye.firstX, eye.firstY, eye.firstX + eye.width, eye.firstY + eye.height};
+  writeLayers(path, display, data,
               {{"", {{"R", planes[0]}, {"G", planes[1]}, {"B", planes[2]}, {"A", planes[3]}, {"Z", planes[4]}}}}, {},
               nullptr, form.half);
 }
@@ -161,7 +163,7 @@ void writeScene(const std::string& path, const DrawnScene& scene) {
     file.root["cameras"] = {{{"type", "perspective"},
                              {"perspective",
                               {{"yfov", 2.0 * std::atan(eye.half.y)},
-                               {"aspectRatio", static_cast<double>(eye.width) / eye.height},
+                               {"aspectRatio", static_cast<double>(eye.displayWidth) / eye.displayHeight},
                                {"znear", 1e-3 * scene.size}}}}};
   glm::dmat4 pose(eye.axes);
   pose[3] = glm::dvec4(eye.at, 1.0);

@@ -11,6 +11,7 @@ namespace pellucid::test {
 struct OpaqueForm {
   bool half = false;
   std::string depthKind = "planar";  // planar, ray, inverse, negative
+  double metresPerUnit = 1.0;        // of depth
 };
 
 void writeOpaque(const std::string& path, const reference::Picture& picture, const reference::Samples& samples,

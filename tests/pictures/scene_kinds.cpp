@@ -119,6 +119,28 @@ void shapes(SceneMaker& maker, Random& random) {
   }
 }
 
+// Posts before a wall, whose edges the picture's filter mixes, and panes before, between and behind them.
+void posts(SceneMaker& maker, Random& random) {
+  const double z = maker.scene().size, width = widthAt(maker, z);
+  const double far = z * random.between(1.3, 4.0);
+  const bool wall = chance(random, 0.75);
+  if (wall) maker.plane(maker.at(0, 0, far), tilted(random, 20.0));
+  const int count = 1 + static_cast<int>(random.below(2));
+  for (int i = 0; i < count; ++i) {
+    const Vec3 out = tilted(random, 15.0);
+    maker.box(maker.at(count == 1 ? random.between(-0.4, 0.4) : i - 0.5, 0, z), facing(out, drawnSpin(random)),
+              width * Vec3(random.between(0.2, 0.4), 6.0, 0.0005));
+  }
+  const int panes = 1 + static_cast<int>(random.below(4));
+  for (int i = 0; i < panes; ++i) {
+    const double depth = chance(random, 0.4) ? z * random.between(0.3, 0.8) : random.between(1.15 * z, 1.2 * far);
+    maker.place(chance(random, 0.6) ? quadSheet(20.0 * widthAt(maker, depth), 20.0 * widthAt(maker, depth))
+                                    : drawnSheet(random, 1.5 * widthAt(maker, depth)),
+                maker.at(random.between(-0.5, 0.5), random.between(-0.5, 0.5), depth),
+                facing(tilted(random, 10.0), drawnSpin(random)));
+  }
+}
+
 // Needles, specks, bumps, closed shells, many layers.
 void meshes(SceneMaker& maker, Random& random) {
   const double z = maker.scene().size;
@@ -196,7 +218,7 @@ void textured(SceneMaker& maker, Random& random, bool cut) {
         facing(tilted(random, 50.0), drawnSpin(random)));
     reference::Coat& coat = mesh.coat;
     // 6 to 30 pixels a texel, so that the finest level is read throughout; even where tilted.
-    const double pixels = maker.scene().numbers.eye.width * half / widthAt(maker, depth);
+    const double pixels = maker.scene().numbers.eye.displayWidth * half / widthAt(maker, depth);
     const double texels = pixels / random.between(6.0, 30.0);
     const Vec2 scale = texels / Vec2(texture.width, texture.height);
     const double turn = chance(random, 0.5) ? drawnSpin(random) : 0.0, c = std::cos(turn), s = std::sin(turn);
@@ -218,18 +240,21 @@ void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
   if (kind == "decals") return decals(maker, random);
   if (kind == "contact") return contact(maker, random);
   if (kind == "shapes") return shapes(maker, random);
+  if (kind == "posts") return posts(maker, random);
   if (kind == "meshes") return meshes(maker, random);
   if (kind == "textures") return textured(maker, random, false);
   if (kind == "cut-outs") return textured(maker, random, true);
   if (kind != "far") throw std::invalid_argument("no kind of scene '" + kind + "'");
-  static const std::vector<std::string> any{"decals", "contact", "shapes", "meshes"};
-  drawInto(any[random.below(4)], maker, random);
+  static const std::vector<std::string> any{"decals", "contact", "posts", "shapes", "meshes"};
+  drawInto(any[random.below(5)], maker, random);
 }
 
 }  // namespace
 
 const std::vector<std::string>& sceneKinds() {
-  static const std::vector<std::string> kinds{"decals", "contact", "shapes", "meshes", "textures", "cut-outs", "far"};
+  static const std::vector<std::string> kinds{"decals",   "contact",  "posts",
+                                              "shapes",   "meshes",   "textures",
+                                              "cut-outs", "far"};
   return kinds;
 }
 

@@ -118,9 +118,17 @@ void SceneMaker::drawEye(double farOff) {
   reference::Eye& eye = scene_.numbers.eye;
   eye.width = 24 + static_cast<int>(random_.below(25));
   eye.height = 16 + static_cast<int>(random_.below(17));
+  eye.displayWidth = eye.width;
+  eye.displayHeight = eye.height;
+  if (chance(random_, 0.2)) {  // a part of the picture, or more than all of it
+    eye.firstX = static_cast<int>(random_.below(21)) - 8;
+    eye.firstY = static_cast<int>(random_.below(15)) - 6;
+    eye.width += static_cast<int>(random_.below(9)) - 4;
+    eye.height += static_cast<int>(random_.below(9)) - 4;
+  }
   eye.parallel = chance(random_, 0.12);
   const double half = eye.parallel ? 0.5 * scene_.size : std::tan(random_.between(0.1, 0.6));
-  eye.half = {half * eye.width / eye.height, half};
+  eye.half = {half * eye.displayWidth / eye.displayHeight, half};
   eye.axes = chance(random_, 0.2) ? glm::dmat3(1.0) : turned(random_);
   eye.at = Vec3(random_.between(-3, 3), random_.between(-3, 3), random_.between(-3, 3)) * scene_.size;
   if (farOff > 0.0) eye.at += farOff * turned(random_)[0];

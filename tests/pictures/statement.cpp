@@ -97,7 +97,7 @@ double Statements::marginOf(const std::vector<Column>& columns) const {
     z = std::min(z, column.opaque.z);
     for (const reference::Crossing& crossing : column.crossings) z = std::min(z, crossing.layer.z);
   }
-  return kPlace + rounding_ * eye.width / (2.0 * eye.half.x * (eye.parallel ? 1.0 : z));
+  return kPlace + rounding_ * eye.displayWidth / (2.0 * eye.half.x * (eye.parallel ? 1.0 : z));
 }
 
 void Statements::eachCut(const Column& column, const Face& face, double nearest, double farthest,

@@ -68,10 +68,11 @@ Picture::Bounds Picture::boundsOf(const Mesh& mesh, const std::array<int, 3>& tr
     const Vec3 at = glm::transpose(eye.axes) * (mesh.corners[static_cast<std::size_t>(index)].at - eye.at);
     if (!eye.parallel && !(-at.z > 1e-3 * glm::length(at))) return {-kNothing, -kNothing, kNothing, kNothing};
     const Vec2 part = Vec2(at) / (eye.parallel ? 1.0 : -at.z) / eye.half;
-    const double x = 0.5 * (1.0 + part.x) * eye.width, y = 0.5 * (1.0 - part.y) * eye.height;
+    const double x = 0.5 * (1.0 + part.x) * eye.displayWidth - eye.firstX;
+    const double y = 0.5 * (1.0 - part.y) * eye.displayHeight - eye.firstY;
     bounds = {std::min(bounds.x0, x), std::min(bounds.y0, y), std::max(bounds.x1, x), std::max(bounds.y1, y)};
   }
-  const double margin = 1e-6 * (eye.width + eye.height + std::abs(bounds.x1) + std::abs(bounds.y1));
+  const double margin = 1e-6 * (eye.displayWidth + eye.displayHeight + std::abs(bounds.x1) + std::abs(bounds.y1));
   return {bounds.x0 - margin, bounds.y0 - margin, bounds.x1 + margin, bounds.y1 + margin};
 }
 

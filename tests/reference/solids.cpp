@@ -41,7 +41,8 @@ Side meet(const Box& box, const Ray& ray) {
 }  // namespace
 
 Ray rayThrough(const Eye& eye, double x, double y) {
-  const double u = (2.0 * x / eye.width - 1.0) * eye.half.x, v = (1.0 - 2.0 * y / eye.height) * eye.half.y;
+  const double u = (2.0 * (x + eye.firstX) / eye.displayWidth - 1.0) * eye.half.x;
+  const double v = (1.0 - 2.0 * (y + eye.firstY) / eye.displayHeight) * eye.half.y;
   if (eye.parallel) return {eye.at + eye.axes * Vec3(u, v, 0.0), -eye.axes[2]};
   return {eye.at, eye.axes * Vec3(u, v, -1.0)};
 }
