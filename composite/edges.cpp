@@ -20,6 +20,7 @@ constexpr double kContrast = 1.0 / 16.0;
 // How far a mixture may lie from the line between the two colours, as a part of its length.
 constexpr double kOffLine = 0.25;
 constexpr double kBetter = 0.8;         // continued colours must lie so much nearer to the line
+constexpr double kWhole = 1.0 / 64.0;   // alpha within it of 1 or 0 is that of a whole surface, or of nothing
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
 
 enum class Side : std::uint8_t { own, nearer, farther };
@@ -73,6 +74,7 @@ class Finder {
   std::optional<SideColour> unmixed(int x, int y, Side side) const;
   glm::dvec4 continued(int x, int y, Side side, const glm::dvec4& colour, glm::dvec2 offset) const;
   std::optional<glm::dvec4> extreme(int x, int y, Side side, const glm::dvec4& opposite) const;
+  static void readAlpha(double alpha, Mixture& mixture);
   static std::optional<Mixture> mixtureOf(const glm::dvec4& colour, const Colours& colours);
   std::optional<Colours> coloursOf(int x, int y, Side other) const;
   std::optional<DepthPlane> planeOf(int x, int y, Side other) const;
@@ -292,6 +294,14 @@ std::optional<Finder::Mixture> Finder::mixtureOf(const glm::dvec4& colour, const
   return best;
 }
 
+// Before nothing at all alpha is the share itself, which no colour tells as well.
+void Finder::readAlpha(double alpha, Mixture& mixture) {
+  if (std::abs(1.0 - mixture.nearer.a) > kWhole || std::abs(mixture.farther.a) > kWhole) return;
+  mixture.nearer.a = 1.0;
+  mixture.farther.a = 0.0;
+  mixture.share = std::clamp(alpha, 0.0, 1.0);
+}
+
 std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
   if (!finiteColour(gbuffer_.beauty.at(x, y))) return std::nullopt;
   for (const auto& [other, mostlyOwn] : besideOf(x, y))
@@ -303,8 +313,11 @@ std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
 std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostlyOwn) const {
   const glm::dvec4 colour(gbuffer_.beauty.at(x, y));
   const std::optional<Colours> colours = coloursOf(x, y, other);
-  const std::optional<Mixture> mixture = colours ? mixtureOf(colour, *colours) : std::nullopt;
+  std::optional<Mixture> mixture = colours ? mixtureOf(colour, *colours) : std::nullopt;
   if (!mixture) return std::nullopt;
+  const std::optional<DepthPlane> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
+  if (!own || !beside) return std::nullopt;
+  if (std::isinf((other == Side::nearer ? own : beside)->centre)) readAlpha(colour.a, *mixture);
   EdgePixel edge;
   edge.x = x;
   edge.y = y;
@@ -312,8 +325,6 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
   // A straight edge leaves at least half of the pixel to the surface at its centre.
   if (mostlyOwn) edge.share = other == Side::nearer ? std::min(edge.share, 0.5) : std::max(edge.share, 0.5);
   if (!(edge.share > kPure && edge.share < 1.0 - kPure)) return std::nullopt;
-  const std::optional<DepthPlane> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
-  if (!own || !beside) return std::nullopt;
   edge.nearer = other == Side::nearer ? *beside : *own;
   edge.farther = other == Side::nearer ? *own : *beside;
   edge.towardsNearer = directionOf(x, y, other);

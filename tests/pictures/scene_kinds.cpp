@@ -252,9 +252,8 @@ void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
 }  // namespace
 
 const std::vector<std::string>& sceneKinds() {
-  static const std::vector<std::string> kinds{"decals",   "contact",  "posts",
-                                              "shapes",   "meshes",   "textures",
-                                              "cut-outs", "far"};
+  static const std::vector<std::string> kinds{"decals", "contact",  "posts",    "shapes",
+                                              "meshes", "textures", "cut-outs", "far"};
   return kinds;
 }
 

@@ -19,8 +19,8 @@ using reference::Vec4;
 constexpr double kRounding = 1e-5;
 // Of a place in the picture, pixels: the rays of a pass are those of floats.
 constexpr double kPlace = 1e-4;
-constexpr double kWide = 0.01;    // of such a margin, pixels: within it more than one edge may lie
-constexpr int kNear = 5;  // pixels within which another face may touch the slope of this one
+constexpr double kWide = 0.01;  // of such a margin, pixels: within it more than one edge may lie
+constexpr int kNear = 5;        // pixels within which another face may touch the slope of this one
 
 }  // namespace
 
@@ -184,8 +184,8 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
     range.take(nominal);
     const auto take = [&](const Column& column) {
       const double z = depthOf(column), farther = (2.0 * step + around.beside) * reach * z + bend;
-      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend,
-               z == kNothing ? z : z + farther, behind, range);
+      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend, z == kNothing ? z : z + farther,
+               behind, range);
     };
     take(columns[i]);
     for (const double part : margin > kWide ? std::vector<double>{1.0, 0.6, 0.3} : std::vector<double>{1.0})
@@ -222,10 +222,25 @@ Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
   return {Judged::filtered, mean, inner.allowed + 3.0 * glm::sqrt(variance * noise), variance};
 }
 
+// Beside an edge and a third face a pixel of one face is no telling from one that is mixed a little.
+bool Statements::maybeTakenApart(int x, int y) const {
+  if (!flags_.edges) return false;
+  std::vector<Face> faces;
+  bool beside = false;
+  for (int v = y - 3; v <= y + 3; ++v)
+    for (int u = x - 3; u <= x + 3; ++u) {
+      if (!inside(u, v)) continue;
+      if (std::find(faces.begin(), faces.end(), centre(u, v)) == faces.end()) faces.push_back(centre(u, v));
+      beside = beside || (std::abs(u - x) < 2 && std::abs(v - y) < 2 && !(centre(u, v) == centre(x, y)));
+    }
+  return beside && faces.size() > 2;
+}
+
 std::vector<Statement> Statements::of(int x, int y) const {
   const Surroundings around = surroundingsOf(x, y);
   if (flags_.passes == 1) return {innerAt(x, y, around)};
-  if (around.faces.size() == 1 && around.faces[0] == centre(x, y) && around.onPlane) {
+  const bool alone = around.faces.size() == 1 && around.faces[0] == centre(x, y);
+  if (alone && around.onPlane && !maybeTakenApart(x, y)) {
     const Statement inner = innerAt(x, y, around);
     return {inner, filteredAt(x, y, inner)};
   }

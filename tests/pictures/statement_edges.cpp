@@ -79,10 +79,13 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
   if (part < 0.5) return std::nullopt;  // a corner, or a thing narrower than the pixel
   // A half is off by 2^-12 of itself, and by so much colours do not tell the shares.
   const double stored = flags_.form.half ? 0x1p-11 * (glm::length(ownColour) + glm::length(otherColour)) : 0.0;
-  const double astray = kNoShare + 4.0 * (impurity + stored) / contrast;
+  // Either colour is off by as much, or by three times that where it is continued from farther off.
+  const double astray = kNoShare + 6.0 * (impurity + stored) / contrast;
   Statement statement{Judged::edge, samples_.mean(x, y, &Sampled::value), Vec4(kRounding + stored), {}};
-  statement.allowed += part * (ranges[0].high - ranges[0].low) + (1.0 - part) * (ranges[1].high - ranges[1].low) +
-                       astray * (glm::max(ranges[0].high, ranges[1].high) - glm::min(ranges[0].low, ranges[1].low));
+  // What layers show and what shines through them may be dealt by shares that are astray, each by itself.
+  const Vec4 brightest = glm::max(glm::max(ranges[0].high, ranges[1].high), Vec4(beauty_.at(x, y)));
+  statement.allowed +=
+      part * (ranges[0].high - ranges[0].low) + (1.0 - part) * (ranges[1].high - ranges[1].low) + astray * brightest;
   return statement;
 }
 
@@ -99,7 +102,8 @@ Statement Statements::mixedAt(int x, int y) const {
     meet(sample.opaque);
     // The pixel's own surface goes on beyond where it ends, for passes that take the pixel for one surface.
     const reference::Ray ray = reference::rayThrough(picture_.scene().eye, sample.x, sample.y);
-    if (!flags_.edges) meet({reference::depthOfPlane(picture_.scene(), centre(x, y), ray).value_or(kNothing), centre(x, y)});
+    if (!flags_.edges)
+      meet({reference::depthOfPlane(picture_.scene(), centre(x, y), ray).value_or(kNothing), centre(x, y)});
   });
   // Where surfaces end the slope of each may be taken from its neighbours' to either side.
   for (int v = y - 2; v <= y + 2; ++v)

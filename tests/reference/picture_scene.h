@@ -17,9 +17,9 @@ struct Eye {
   glm::dmat3 axes{1.0};  // columns: right, up, backwards; orthonormal
   Vec2 half{0.5, 0.5};   // half of the picture at distance 1, or in metres where rays are parallel
   bool parallel = false;
-  int width = 32, height = 24;    // pixels that are rendered
+  int width = 32, height = 24;                // pixels that are rendered
   int displayWidth = 32, displayHeight = 24;  // of the whole picture, of which those are a part
-  int firstX = 0, firstY = 0;     // that begins there
+  int firstX = 0, firstY = 0;                 // that begins there
 };
 
 struct Plane {
