@@ -14,6 +14,9 @@ namespace {
 
 // Two pixels lie on different surfaces where each is farther from the other's plane than this, relative to its depth.
 constexpr double kApart = 1.0 / 256.0;
+// How much more the slope of a ball may change at its limb than a pixel before: by as much where the limb passes
+// through the pixel's centre.
+constexpr double kLimb = 6.1;
 constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
 // Surfaces whose colours differ by less, relative to the brighter, do not tell their shares.
 constexpr double kContrast = 1.0 / 16.0;
@@ -64,6 +67,7 @@ class Finder {
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
   bool apart(int x, int y, int u, int v) const;
+  bool bendsAway(int x, int y, int dx, int dy) const;
   void markSteps();
   void markBesideEdges();
   bool breaksBetween(int x, int y, int u, int v) const;
@@ -96,8 +100,25 @@ bool Finder::apart(int x, int y, int u, int v) const {
   const auto z = static_cast<double>(gbuffer_.viewZ.at(x, y)), other = static_cast<double>(gbuffer_.viewZ.at(u, v));
   const double least = kApart * std::min(z, other);
   if (std::abs(z - other) <= least) return false;
-  return std::abs(planes_.at(x, y).z(u - x, v - y) - other) > least &&
-         std::abs(planes_.at(u, v).z(x - u, y - v) - z) > least;
+  if (std::abs(planes_.at(x, y).z(u - x, v - y) - other) <= least ||
+      std::abs(planes_.at(u, v).z(x - u, y - v) - z) <= least)
+    return false;
+  if (std::max(std::abs(u - x), std::abs(v - y)) > 1) return true;
+  return !bendsAway(x, y, u - x, v - y) && !bendsAway(u, v, x - u, y - v);
+}
+
+// Whether a step to a neighbour goes on as the two steps before it, more and more steeply, as towards a ball's limb.
+bool Finder::bendsAway(int x, int y, int dx, int dy) const {
+  double at[4];
+  for (int k = 0; k < 4; ++k) {
+    const int u = x + (k - 2) * dx, v = y + (k - 2) * dy;
+    if (!inside(u, v) || !hit(u, v)) return false;
+    const auto z = static_cast<double>(gbuffer_.viewZ.at(u, v));
+    at[k] = planes_.at(u, v).orthographic ? z : 1.0 / z;  // linear on planes, which never bend so
+  }
+  const double first = at[1] - at[0], second = at[2] - at[1], third = at[3] - at[2];
+  const bool steeper = first * second >= 0.0 && second * third > 0.0 && std::abs(first) <= std::abs(second);
+  return steeper && std::abs(third) <= std::abs(second) + kLimb * std::abs(second - first);
 }
 
 void Finder::markSteps() {
@@ -273,7 +294,9 @@ void takeApart(const glm::dvec4& colour, const glm::dvec4& nearer, const glm::dv
   for (int c = 0; c < 3; ++c)
     edge.nearerPart[c] = static_cast<float>(colour[c] > 0.0 ? std::clamp(part[c] / colour[c], 0.0, 1.0) : f);
   edge.alpha = static_cast<float>(colour.a);
-  const double nearerAlpha = std::clamp(nearer.a + f * rest.a, 0.0, 1.0);
+  const double least = std::max(0.0, (colour.a - g) / f),
+               most = std::min(1.0, colour.a / f);  // else the other's is none
+  const double nearerAlpha = std::clamp(nearer.a + f * rest.a, std::min(least, most), most);
   edge.nearerAlpha = static_cast<float>(nearerAlpha);
   edge.fartherAlpha = static_cast<float>((colour.a - f * nearerAlpha) / g);
 }

@@ -20,6 +20,7 @@ constexpr double kRounding = 1e-5;
 // Of a place in the picture, pixels: the rays of a pass are those of floats.
 constexpr double kPlace = 1e-4;
 constexpr double kWide = 0.01;  // of such a margin, pixels: within it more than one edge may lie
+constexpr int kFewPasses = 4;   // may all see what few places see
 constexpr int kNear = 5;        // pixels within which another face may touch the slope of this one
 
 }  // namespace
@@ -209,7 +210,10 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
 Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
   Vec4 sum(0.0), squares(0.0);
   double weights = 0.0, weightSquares = 0.0;
+  Range seen;
+  seen.take(inner.right);
   samples_.under(x, y, [&](const Sampled& sample, double weight) {
+    seen.take(sample.value);
     sum += weight * sample.value;
     squares += weight * sample.value * sample.value;
     weights += weight;
@@ -218,6 +222,8 @@ Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
   const Vec4 mean = sum / weights;
   // What is smaller than the distance of places is met by the passes or by these, and by chance.
   const Vec4 variance = glm::max(squares / weights - mean * mean, inner.variance);
+  if (flags_.passes <= kFewPasses)
+    return {Judged::filtered, mean, inner.allowed + glm::max(seen.high - mean, mean - seen.low), variance};
   const double noise = 1.0 / flags_.passes + weightSquares / (weights * weights);
   return {Judged::filtered, mean, inner.allowed + 3.0 * glm::sqrt(variance * noise), variance};
 }

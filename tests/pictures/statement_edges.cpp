@@ -65,16 +65,20 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
 
   double shares[2] = {0.0, 0.0};
   Range ranges[2];
-  samples_.under(x, y, [&](const Sampled& sample, double weight) {
-    shares[sample.opaque.face == own ? 0 : 1] += weight;
-    const Column column = picture_.columnAt(sample.x, sample.y);
+  const auto take = [&](double u, double v) {
+    const Column column = picture_.columnAt(u, v);
     for (int side = 0; side < 2; ++side) {
       const Face& face = side == 0 ? own : other;
       const double z = reference::depthOfPlane(picture_.scene(), face, column.ray).value_or(kNothing);
       const double farther = 1.0 + 3.0 * flags_.depthStep();
       takeCuts(column, face, z, z * farther, side == 0 ? ownColour : otherColour, ranges[side]);
     }
+  };
+  samples_.under(x, y, [&](const Sampled& sample, double weight) {
+    shares[sample.opaque.face == own ? 0 : 1] += weight;
+    take(sample.x, sample.y);
   });
+  for (const glm::dvec2& place : places_) take(x + place.x, y + place.y);
   const double part = shares[0] / (shares[0] + shares[1]);
   if (part < 0.5) return std::nullopt;  // a corner, or a thing narrower than the pixel
   // A half is off by 2^-12 of itself, and by so much colours do not tell the shares.
@@ -111,8 +115,8 @@ Statement Statements::mixedAt(int x, int y) const {
       if (inside(u, v)) meet(centres_.at(u, v));
   // Light and transmission apart: edges are taken apart with a weight for each.
   Range light, passed;
-  samples_.under(x, y, [&](const Sampled& sample, double) {
-    const Column column = picture_.columnAt(sample.x, sample.y);
+  const auto take = [&](double u, double v) {
+    const Column column = picture_.columnAt(u, v);
     for (const Face& face : faces) {
       const double first = face.solid < 0 ? kNothing : nearest, last = face.solid < 0 ? kNothing : farthest;
       eachCut(column, face, first, last, [&](const reference::Shown& shown) {
@@ -120,7 +124,9 @@ Statement Statements::mixedAt(int x, int y) const {
         passed.take(Vec4(shown.transmission, 0.0));
       });
     }
-  });
+  };
+  samples_.under(x, y, [&](const Sampled& sample, double) { take(sample.x, sample.y); });
+  for (const glm::dvec2& place : places_) take(x + place.x, y + place.y);
   const Vec4 behind(beauty_.at(x, y));
   const auto with = [&](const Vec4& l, const Vec4& t) {
     return Vec4(Vec3(l) + Vec3(t) * Vec3(behind), 1.0 - (1.0 - behind.a) * (t.r + t.g + t.b) / 3.0);
