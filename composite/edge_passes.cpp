@@ -47,8 +47,10 @@ void EdgePasses::depthAt(int pass, Image<float>& viewZ) const {
   const auto number = static_cast<std::size_t>(pass);
   const glm::dvec2 offset = samples_[number] - 0.5;
   for (const Edge& edge : edges_) {
-    const DepthPlane& plane = edge.seesNearer[number] ? edge.pixel.nearer : edge.pixel.farther;
-    viewZ.at(edge.pixel.x, edge.pixel.y) = static_cast<float>(plane.z(offset.x, offset.y));
+    double z = edge.pixel.farther.z(offset.x, offset.y);
+    // Where surfaces meet, as a steep floor and its wall, the nearer one goes on behind the farther.
+    if (edge.seesNearer[number]) z = std::min(z, edge.pixel.nearer.z(offset.x, offset.y));
+    viewZ.at(edge.pixel.x, edge.pixel.y) = static_cast<float>(z);
   }
 }
 

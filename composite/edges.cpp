@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,12 +14,16 @@ namespace {
 
 // Two pixels lie on different surfaces where each is farther from the other's plane than this, relative to its depth.
 constexpr double kApart = 1.0 / 256.0;
+// How much more the slope of a ball may change at its limb than a pixel before: by as much where the limb passes
+// through the pixel's centre.
+constexpr double kLimb = 6.1;
 constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
 // Surfaces whose colours differ by less, relative to the brighter, do not tell their shares.
 constexpr double kContrast = 1.0 / 16.0;
 // How far a mixture may lie from the line between the two colours, as a part of its length.
 constexpr double kOffLine = 0.25;
 constexpr double kBetter = 0.8;         // continued colours must lie so much nearer to the line
+constexpr double kWhole = 1.0 / 64.0;   // alpha within it of 1 or 0 is that of a whole surface, or of nothing
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
 
 enum class Side : std::uint8_t { own, nearer, farther };
@@ -56,29 +61,38 @@ class Finder {
     double off;    // how far the pixel's colour lies from it, as a part of the line's length
   };
   struct Beside {
-    Side other = Side::own;  // own: the neighbours lie on one surface
+    Side other = Side::own;  // own: none of the neighbours lies there
     bool mostlyOwn = false;  // of the 3 x 3 pixels more lie on the pixel's side of the edge
   };
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
   bool apart(int x, int y, int u, int v) const;
+  bool bendsAway(int x, int y, int dx, int dy) const;
+  void markSteps();
   void markBesideEdges();
+  bool breaksBetween(int x, int y, int u, int v) const;
+  bool joined(int x, int y, int u, int v) const;
   Side sideOf(int x, int y, int u, int v) const;
-  Beside besideOf(int x, int y) const;
+  std::array<Beside, 2> besideOf(int x, int y) const;
   glm::dvec2 directionOf(int x, int y, Side other) const;
   std::optional<SideColour> unmixed(int x, int y, Side side) const;
   glm::dvec4 continued(int x, int y, Side side, const glm::dvec4& colour, glm::dvec2 offset) const;
   std::optional<glm::dvec4> extreme(int x, int y, Side side, const glm::dvec4& opposite) const;
+  static void readAlpha(double alpha, Mixture& mixture);
   static std::optional<Mixture> mixtureOf(const glm::dvec4& colour, const Colours& colours);
   std::optional<Colours> coloursOf(int x, int y, Side other) const;
   std::optional<DepthPlane> planeOf(int x, int y, Side other) const;
   std::optional<EdgePixel> edgeAt(int x, int y) const;
+  std::optional<EdgePixel> edgeBeside(int x, int y, Side other, bool mostlyOwn) const;
 
   const GBuffer& gbuffer_;
   const DepthPlanes& planes_;
   int width_, height_;
+  Image<std::uint8_t> steps_;  // by bit, as kSteps: from the pixel to that neighbour the surface breaks off
   Image<std::uint8_t> besideEdge_;
 };
+
+constexpr int kSteps[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 
 bool Finder::apart(int x, int y, int u, int v) const {
   const bool here = hit(x, y), there = hit(u, v);
@@ -86,8 +100,43 @@ bool Finder::apart(int x, int y, int u, int v) const {
   const auto z = static_cast<double>(gbuffer_.viewZ.at(x, y)), other = static_cast<double>(gbuffer_.viewZ.at(u, v));
   const double least = kApart * std::min(z, other);
   if (std::abs(z - other) <= least) return false;
-  return std::abs(planes_.at(x, y).z(u - x, v - y) - other) > least &&
-         std::abs(planes_.at(u, v).z(x - u, y - v) - z) > least;
+  if (std::abs(planes_.at(x, y).z(u - x, v - y) - other) <= least ||
+      std::abs(planes_.at(u, v).z(x - u, y - v) - z) <= least)
+    return false;
+  if (std::max(std::abs(u - x), std::abs(v - y)) > 1) return true;
+  return !bendsAway(x, y, u - x, v - y) && !bendsAway(u, v, x - u, y - v);
+}
+
+// Whether a step to a neighbour goes on as the two steps before it, more and more steeply, as towards a ball's limb.
+bool Finder::bendsAway(int x, int y, int dx, int dy) const {
+  double at[4];
+  for (int k = 0; k < 4; ++k) {
+    const int u = x + (k - 2) * dx, v = y + (k - 2) * dy;
+    if (!inside(u, v) || !hit(u, v)) return false;
+    const auto z = static_cast<double>(gbuffer_.viewZ.at(u, v));
+    at[k] = planes_.at(u, v).orthographic ? z : 1.0 / z;  // linear on planes, which never bend so
+  }
+  const double first = at[1] - at[0], second = at[2] - at[1], third = at[3] - at[2];
+  const bool steeper = first * second >= 0.0 && second * third > 0.0 && std::abs(first) <= std::abs(second);
+  return steeper && std::abs(third) <= std::abs(second) + kLimb * std::abs(second - first);
+}
+
+void Finder::markSteps() {
+  steps_ = Image<std::uint8_t>(width_, height_, 0);
+  tbb::parallel_for(0, height_, [&](int y) {
+    for (int x = 0; x < width_; ++x)
+      for (int k = 0; k < 4; ++k) {
+        const int u = x + kSteps[k][0], v = y + kSteps[k][1];
+        if (inside(u, v) && apart(x, y, u, v)) steps_.at(x, y) |= static_cast<std::uint8_t>(1 << k);
+      }
+  });
+}
+
+// Of two pixels side by side.
+bool Finder::breaksBetween(int x, int y, int u, int v) const {
+  if (v < y || (v == y && u < x)) return breaksBetween(u, v, x, y);
+  const int k = v == y ? 0 : 2 + u - x;
+  return steps_.at(x, y) >> k & 1;
 }
 
 void Finder::markBesideEdges() {
@@ -96,21 +145,35 @@ void Finder::markBesideEdges() {
     for (int x = 0; x < width_; ++x)
       for (int v = y - 1; v <= y + 1 && !besideEdge_.at(x, y); ++v)
         for (int u = x - 1; u <= x + 1; ++u)
-          if (inside(u, v) && apart(x, y, u, v)) besideEdge_.at(x, y) = 1;
+          if (inside(u, v) && (u != x || v != y) && breaksBetween(x, y, u, v)) besideEdge_.at(x, y) = 1;
   });
+}
+
+// Whether the surface goes on from pixel to pixel along the line between two: where it bends, as towards the limb of a
+// ball, planes say nothing of pixels farther off.
+bool Finder::joined(int x, int y, int u, int v) const {
+  const int steps = std::max(std::abs(u - x), std::abs(v - y));
+  int fromX = x, fromY = y;
+  for (int i = 1; i <= steps; ++i) {
+    const int toX = x + (2 * (u - x) * i + (u < x ? -steps : steps)) / (2 * steps);
+    const int toY = y + (2 * (v - y) * i + (v < y ? -steps : steps)) / (2 * steps);
+    if (breaksBetween(fromX, fromY, toX, toY)) return false;
+    fromX = toX;
+    fromY = toY;
+  }
+  return true;
 }
 
 // On which side of pixel (x, y)'s surface another pixel lies.
 Side Finder::sideOf(int x, int y, int u, int v) const {
-  if ((u == x && v == y) || !apart(x, y, u, v)) return Side::own;
+  if ((u == x && v == y) || !apart(x, y, u, v) || joined(x, y, u, v)) return Side::own;
   if (!hit(x, y)) return Side::nearer;
   if (!hit(u, v)) return Side::farther;
   return static_cast<double>(gbuffer_.viewZ.at(u, v)) < planes_.at(x, y).z(u - x, v - y) ? Side::nearer : Side::farther;
 }
 
-// The other side is that on which more of the eight neighbours lie, those that share an edge with the pixel counting
-// twice.
-Finder::Beside Finder::besideOf(int x, int y) const {
+// First the side on which more of the eight neighbours lie, those that share an edge with the pixel counting twice.
+std::array<Finder::Beside, 2> Finder::besideOf(int x, int y) const {
   int weight[3] = {0, 0, 0}, count[3] = {0, 0, 0};
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) {
@@ -119,10 +182,14 @@ Finder::Beside Finder::besideOf(int x, int y) const {
       weight[side] += u == x || v == y ? 2 : 1;
       ++count[side];
     }
-  const auto nearer = static_cast<std::size_t>(Side::nearer), farther = static_cast<std::size_t>(Side::farther);
-  if (weight[nearer] == 0 && weight[farther] == 0) return {};
-  const std::size_t other = weight[nearer] >= weight[farther] ? nearer : farther;
-  return {static_cast<Side>(other), 2 * count[other] < count[0] + count[1] + count[2]};
+  const auto besideAt = [&](Side side) {
+    const auto other = static_cast<std::size_t>(side);
+    return weight[other] == 0 ? Beside() : Beside{side, 2 * count[other] < count[0] + count[1] + count[2]};
+  };
+  const Beside nearer = besideAt(Side::nearer), farther = besideAt(Side::farther);
+  const bool nearerFirst =
+      weight[static_cast<std::size_t>(Side::nearer)] >= weight[static_cast<std::size_t>(Side::farther)];
+  return nearerFirst ? std::array<Beside, 2>{nearer, farther} : std::array<Beside, 2>{farther, nearer};
 }
 
 // Across the edge towards the nearer surface: the moment of what lies on it in 5 x 5 pixels.
@@ -227,7 +294,9 @@ void takeApart(const glm::dvec4& colour, const glm::dvec4& nearer, const glm::dv
   for (int c = 0; c < 3; ++c)
     edge.nearerPart[c] = static_cast<float>(colour[c] > 0.0 ? std::clamp(part[c] / colour[c], 0.0, 1.0) : f);
   edge.alpha = static_cast<float>(colour.a);
-  const double nearerAlpha = std::clamp(nearer.a + f * rest.a, 0.0, 1.0);
+  const double least = std::max(0.0, (colour.a - g) / f),
+               most = std::min(1.0, colour.a / f);  // else the other's is none
+  const double nearerAlpha = std::clamp(nearer.a + f * rest.a, std::min(least, most), most);
   edge.nearerAlpha = static_cast<float>(nearerAlpha);
   edge.fartherAlpha = static_cast<float>((colour.a - f * nearerAlpha) / g);
 }
@@ -248,13 +317,30 @@ std::optional<Finder::Mixture> Finder::mixtureOf(const glm::dvec4& colour, const
   return best;
 }
 
+// Before nothing at all alpha is the share itself, which no colour tells as well.
+void Finder::readAlpha(double alpha, Mixture& mixture) {
+  if (std::abs(1.0 - mixture.nearer.a) > kWhole || std::abs(mixture.farther.a) > kWhole) return;
+  mixture.nearer.a = 1.0;
+  mixture.farther.a = 0.0;
+  mixture.share = std::clamp(alpha, 0.0, 1.0);
+}
+
 std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
-  const auto [other, mostlyOwn] = besideOf(x, y);
+  if (!finiteColour(gbuffer_.beauty.at(x, y))) return std::nullopt;
+  for (const auto& [other, mostlyOwn] : besideOf(x, y))
+    if (other != Side::own)
+      if (const std::optional<EdgePixel> edge = edgeBeside(x, y, other, mostlyOwn)) return edge;
+  return std::nullopt;
+}
+
+std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostlyOwn) const {
   const glm::dvec4 colour(gbuffer_.beauty.at(x, y));
-  if (other == Side::own || !finiteColour(gbuffer_.beauty.at(x, y))) return std::nullopt;
   const std::optional<Colours> colours = coloursOf(x, y, other);
-  const std::optional<Mixture> mixture = colours ? mixtureOf(colour, *colours) : std::nullopt;
+  std::optional<Mixture> mixture = colours ? mixtureOf(colour, *colours) : std::nullopt;
   if (!mixture) return std::nullopt;
+  const std::optional<DepthPlane> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
+  if (!own || !beside) return std::nullopt;
+  if (std::isinf((other == Side::nearer ? own : beside)->centre)) readAlpha(colour.a, *mixture);
   EdgePixel edge;
   edge.x = x;
   edge.y = y;
@@ -262,8 +348,6 @@ std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
   // A straight edge leaves at least half of the pixel to the surface at its centre.
   if (mostlyOwn) edge.share = other == Side::nearer ? std::min(edge.share, 0.5) : std::max(edge.share, 0.5);
   if (!(edge.share > kPure && edge.share < 1.0 - kPure)) return std::nullopt;
-  const std::optional<DepthPlane> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
-  if (!own || !beside) return std::nullopt;
   edge.nearer = other == Side::nearer ? *beside : *own;
   edge.farther = other == Side::nearer ? *own : *beside;
   edge.towardsNearer = directionOf(x, y, other);
@@ -272,6 +356,7 @@ std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
 }
 
 std::vector<EdgePixel> Finder::find() {
+  markSteps();
   markBesideEdges();
   std::vector<std::vector<EdgePixel>> rows(static_cast<std::size_t>(height_));
   tbb::parallel_for(0, height_, [&](int y) {

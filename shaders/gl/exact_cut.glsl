@@ -2,10 +2,11 @@
 // The fragment stage's half of gl/exact_coverage.glsl.
 #include "gl/exact_coverage.glsl"
 #ifdef EXACT_COVERAGE
-// The true corners: window pixels and 1; of a corner behind the eye or far outside, window pixels times w, and w.
-layout(location = 5) flat in vec3 corner0;
-layout(location = 6) flat in vec3 corner1;
-layout(location = 8) flat in vec3 corner2;
+// The true corners: window pixels and 1, or, of a corner behind the eye or far outside, window pixels times w, and w;
+// and planar depth.
+layout(location = 5) flat in vec4 corner0;
+layout(location = 6) flat in vec4 corner1;
+layout(location = 8) flat in vec4 corner2;
 layout(location = 9) flat in float winding;  // of them: 1 or -1; 0 covers nothing
 
 const float kSideRounding = 4.8e-7f;  // of the products of which sideOf() takes the difference
@@ -34,8 +35,8 @@ bool behindEdge(vec3 a, vec3 b) {
 
 bool outsideTriangle() {
   if (corner0.x == kUncut) return false;
-  return winding == 0.0f || behindEdge(corner0, corner1) || behindEdge(corner1, corner2) ||
-         behindEdge(corner2, corner0);
+  return winding == 0.0f || behindEdge(corner0.xyz, corner1.xyz) || behindEdge(corner1.xyz, corner2.xyz) ||
+         behindEdge(corner2.xyz, corner0.xyz);
 }
 #else
 bool outsideTriangle() { return false; }

@@ -8,6 +8,7 @@
 #include "gl/material.glsl"
 #include "gl/lights.glsl"
 #include "gl/exact_cut.glsl"
+#include "gl/contact_depth.glsl"
 #include "gl/identity.glsl"
 #include "shared/stochastic_mask.glsl"  // here, where no #if leaves it out: a text is included once
 #ifdef ENVIRONMENT
@@ -186,7 +187,11 @@ void main() {
   surface.coverage *= cardShare(z, depthBehind(pixel), material.particle.x);
 #endif
   if (!(z > 0.0f) || !(surface.coverage > 0.0f)) discard;
+#ifdef POINTS
   if (z > texelFetch(opaqueZ, pixel, 0).r * depthFactor) discard;
+#else
+  if (isBehind(z, texelFetch(opaqueZ, pixel, 0).r)) discard;
+#endif
 
   Reflected reflected = reflectedHere(surface, z, gradient, pixel);
   Layer layer = layerOf(surface, reflected.light, reflected.cosEye, z, material.covering.g != 0.0f);

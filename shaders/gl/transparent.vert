@@ -36,9 +36,9 @@ vec4 clipOf(vec3 pView) {
 }
 
 #ifdef EXACT_COVERAGE
-layout(location = 5) flat out vec3 corner0;  // as gl/exact_cut.glsl reads them
-layout(location = 6) flat out vec3 corner1;
-layout(location = 8) flat out vec3 corner2;
+layout(location = 5) flat out vec4 corner0;  // as gl/exact_cut.glsl reads them
+layout(location = 6) flat out vec4 corner1;
+layout(location = 8) flat out vec4 corner2;
 layout(location = 9) flat out float winding;
 
 // A triangle in the window, before it is grown.
@@ -182,10 +182,10 @@ float windingOf(vec3 a, vec3 b, vec3 c) {
 void placeCorner() {
   int corner = gl_VertexID % 3, first = gl_VertexID - corner;
   Corners corners = cornersOf(first);
-  corner0 = corners.window[0];
-  corner1 = corners.window[1];
-  corner2 = corners.window[2];
-  winding = windingOf(corner0, corner1, corner2);
+  corner0 = vec4(corners.window[0], -corners.view[0].z);
+  corner1 = vec4(corners.window[1], -corners.view[1].z);
+  corner2 = vec4(corners.window[2], -corners.view[2].z);
+  winding = windingOf(corners.window[0], corners.window[1], corners.window[2]);
   bool finite = true;
   for (int k = 0; k < 3; ++k) finite = finite && all(lessThan(abs(corners.window[k]), vec3(kUncut)));
   if (!finite) {

@@ -1,0 +1,79 @@
+#include "tests/pictures/drawn_flags.h"
+
+#include <fmt/format.h>
+
+#include "tests/pictures/scene_parts.h"
+
+namespace pellucid::test {
+namespace {
+
+template <std::size_t N>
+const char* oneOf(Random& random, const char* const (&texts)[N]) {
+  return texts[random.below(static_cast<std::uint32_t>(N))];
+}
+
+void drawFilter(Random& random, DrawnFlags& flags) {
+  if (flags.passes == 1 || chance(random, 0.5)) return;
+  static constexpr const char* kShapes[] = {"box", "triangle", "gaussian", "blackman-harris"};
+  flags.filter.shape = oneOf(random, kShapes);
+  flags.filter.radius = std::round(random.between(0.5, 1.6) * 64.0) / 64.0;
+  flags.words.push_back(fmt::format("--filter={}:{}", flags.filter.shape, flags.filter.radius));
+}
+
+void drawDepth(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
+  static constexpr const char* kKinds[] = {"ray", "inverse", "negative"};
+  if (chance(random, 0.3)) {
+    flags.form.depthKind = oneOf(random, kKinds);
+    flags.words.push_back("--depth-kind=" + flags.form.depthKind);
+  }
+  if (chance(random, 0.1)) {
+    flags.form.metresPerUnit = 0.01;
+    flags.words.emplace_back("--unit=0.01");
+  }
+  // Halves below 2^-14 have larger steps, and none is above 65504.
+  const double unit = scene.size / flags.form.metresPerUnit;
+  flags.form.half = chance(random, 0.4) && unit < (flags.form.depthKind == "inverse" ? 50.0 : 1000.0);
+}
+
+void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
+  if (scene.oneColour) {
+    static constexpr const char* kMeans[] = {"over",       "phenomenological", "weighted",
+                                             "front+tail", "mlab:4",           "wavelet:2"};
+    flags.method = oneOf(random, kMeans);
+  }
+  const bool hasExact = flags.method == "over" || flags.method == "phenomenological";
+  const bool exact = hasExact && chance(random, 0.4);
+  // Precision by itself asks for the sums.
+  if (exact || flags.method != "over" || chance(random, 0.5)) flags.words.push_back("--method=" + flags.method);
+  if (exact) flags.words.emplace_back("--precision=exact");
+  if (flags.method == "phenomenological" && chance(random, 0.3)) flags.words.emplace_back("--resolve=gl");
+  static constexpr const char* kWeights[] = {"auto", "power:2", "eq7", "uniform"};
+  if (flags.method == "phenomenological" || flags.method == "weighted")
+    flags.words.push_back(std::string("--weight=") + oneOf(random, kWeights));
+}
+
+}  // namespace
+
+DrawnFlags drawFlags(const DrawnScene& scene, Random& random) {
+  static constexpr int kPasses[] = {1, 1, 2, 3, 4, 5, 8, 8, 8, 16, 16, 32, 64};
+  DrawnFlags flags;
+  flags.passes = kPasses[random.below(static_cast<std::uint32_t>(std::size(kPasses)))];
+  flags.words.push_back(fmt::format("--aa={}", flags.passes));
+  drawFilter(random, flags);
+  drawDepth(scene, random, flags);
+  drawMethod(scene, random, flags);
+  flags.edges = flags.passes > 1;
+  if (flags.edges && chance(random, 0.2)) {
+    flags.edges = false;
+    flags.words.emplace_back("--edges=off");
+  }
+  if (scene.kind == "cut-outs" && chance(random, 0.4)) {
+    flags.softMask = false;
+    flags.words.emplace_back("--mask=hard");
+  }
+  if (chance(random, 0.2)) flags.words.emplace_back("--budget=1M");
+  if (chance(random, 0.2)) flags.words.push_back(fmt::format("--order=shuffle:{}", random.below(100)));
+  return flags;
+}
+
+}  // namespace pellucid::test

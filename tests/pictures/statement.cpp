@@ -1,0 +1,257 @@
+#include "tests/pictures/statement.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid::test {
+namespace {
+
+using reference::Column;
+using reference::Face;
+using reference::kNothing;
+using reference::Sampled;
+using reference::Shown;
+using reference::Vec2;
+using reference::Vec3;
+using reference::Vec4;
+
+// Of the values themselves: colours are floats, and so are the products of a few layers.
+constexpr double kRounding = 1e-5;
+// Of a place in the picture, pixels: the rays of a pass are those of floats.
+constexpr double kPlace = 1e-4;
+constexpr double kWide = 0.01;  // of such a margin, pixels: within it more than one edge may lie
+constexpr int kFewPasses = 4;   // may all see what few places see
+constexpr int kNear = 5;        // pixels within which another face may touch the slope of this one
+
+}  // namespace
+
+double Statement::error(const Vec4& value) const {
+  double largest = 0.0;
+  for (int c = 0; c < 4; ++c) {
+    const double off = std::abs(value[c] - right[c]) / allowed[c];
+    largest = std::max(largest, std::isfinite(off) ? off : 1e9);
+  }
+  return largest;
+}
+
+void Statements::Range::take(const Vec4& value) {
+  low = glm::min(low, value);
+  high = glm::max(high, value);
+}
+void Statements::Range::take(const Range& other) {
+  take(other.low);
+  take(other.high);
+}
+
+Statements::Statements(const DrawnScene& scene, const reference::Picture& picture, const reference::Samples& samples,
+                       const DrawnFlags& flags, const Image<glm::vec4>& beauty, std::vector<glm::dvec2> places)
+    : picture_(picture),
+      samples_(samples),
+      flags_(flags),
+      beauty_(beauty),
+      places_(std::move(places)),
+      centres_(beauty.width(), beauty.height()),
+      size_(scene.size) {
+  for (int y = 0; y < centres_.height(); ++y)
+    for (int x = 0; x < centres_.width(); ++x)
+      centres_.at(x, y) =
+          reference::nearestSolid(picture.scene(), reference::rayThrough(picture.scene().eye, x + 0.5, y + 0.5));
+  // The square that a pass stands for is what the density of all of them at the filter's middle leaves to each.
+  for (const reference::Mesh& mesh : picture.scene().meshes)
+    if (mesh.coat.covering == reference::Covering::mask && flags.softMask)
+      band_ = std::max(1.0, 2.0 * flags.filter.radius) / std::sqrt(static_cast<double>(flags.passes));
+  // A corner comes to the eye through one product of floats: as far as the mesh's origin lies from the eye, and the
+  // corner from that origin.
+  const reference::Eye& eye = picture.scene().eye;
+  for (std::size_t i = 0; i < scene.placed.size(); ++i) {
+    glm::dmat4 world(1.0);
+    for (const glm::dmat4& node : scene.placed[i].nodes) world = world * node;
+    const double away = glm::length(Vec3(world[3]) - eye.at);
+    for (const reference::Corner& corner : picture.scene().meshes[i].corners)
+      rounding_ = std::max(rounding_, 0x1p-22 * (away + glm::length(corner.at - Vec3(world[3]))));
+  }
+}
+
+Vec4 Statements::colourOf(const Face& face) const {
+  return face.solid < 0 ? Vec4(0.0) : Vec4(picture_.scene().solids[static_cast<std::size_t>(face.solid)].colour, 1.0);
+}
+
+Vec4 Statements::valueOf(const Shown& shown, const Vec4& behind) const {
+  const double passed = (shown.transmission.r + shown.transmission.g + shown.transmission.b) / 3.0;
+  return {shown.over(Vec3(behind)), 1.0 - (1.0 - behind.a) * passed};
+}
+
+// By how much the depth of a ball leaves its plane within a pixel.
+double Statements::bendOf(int x, int y) const {
+  const auto at = [&](int u, int v) { return inside(u, v) ? centres_.at(u, v).z : kNothing; };
+  double bend = 0.0;
+  for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}})
+    bend = std::max(bend, std::abs(at(x + dx, y + dy) + at(x - dx, y - dy) - 2.0 * at(x, y)));
+  return bend * std::max(1.0, 2.0 * flags_.filter.radius * flags_.filter.radius);
+}
+
+// Pixels by which floats move what rays meet at the depths that lie in a pixel.
+double Statements::marginOf(const std::vector<Column>& columns) const {
+  const reference::Eye& eye = picture_.scene().eye;
+  double z = 0.5 * size_;
+  for (const Column& column : columns) {
+    z = std::min(z, column.opaque.z);
+    for (const reference::Crossing& crossing : column.crossings) z = std::min(z, crossing.layer.z);
+  }
+  return kPlace + rounding_ * eye.displayWidth / (2.0 * eye.half.x * (eye.parallel ? 1.0 : z));
+}
+
+void Statements::eachCut(const Column& column, const Face& face, double nearest, double farthest,
+                         const std::function<void(const Shown&)>& take) const {
+  Column loose = column;
+  bool any = false;
+  for (reference::Crossing& crossing : loose.crossings) {
+    if (face.solid < 0) break;
+    // Floats do not keep it on its face to the precision of the depth.
+    if (!(crossing.on == face) || rounding_ * crossing.steep < 0.25 * flags_.depthStep() * crossing.layer.z) continue;
+    crossing.on = Face();
+    any = true;
+  }
+  if (any) eachCut(loose, face, nearest, farthest, take);
+  take(reference::Picture::shownBefore(column, face, nearest));
+  take(reference::Picture::shownBefore(column, face, farthest));
+  for (std::size_t i = 0; i < column.crossings.size(); ++i) {
+    const reference::Crossing& crossing = column.crossings[i];
+    const double off = rounding_ * crossing.steep, z = crossing.layer.z;
+    if (z + off > nearest && z - off < farthest)
+      for (const double cut : {z - 2.0 * off, z + 2.0 * off}) take(reference::Picture::shownBefore(column, face, cut));
+    if (i == 0 || z - column.crossings[i - 1].layer.z > off + rounding_ * column.crossings[i - 1].steep) continue;
+    Column other = column;  // which of the two is nearer floats do not tell
+    std::swap(other.crossings[i - 1], other.crossings[i]);
+    std::swap(other.crossings[i - 1].layer.z, other.crossings[i].layer.z);
+    take(reference::Picture::shownBefore(other, face, farthest));
+  }
+}
+
+void Statements::takeCuts(const Column& column, const Face& face, double nearest, double farthest, const Vec4& behind,
+                          Range& range) const {
+  eachCut(column, face, nearest, farthest, [&](const Shown& shown) { range.take(valueOf(shown, behind)); });
+}
+
+Statements::Surroundings Statements::surroundingsOf(int x, int y) const {
+  Surroundings around;
+  samples_.under(x, y, [&](const Sampled& sample, double) {
+    if (std::find(around.faces.begin(), around.faces.end(), sample.opaque.face) == around.faces.end())
+      around.faces.push_back(sample.opaque.face);
+  });
+  const Face& face = centre(x, y);
+  if (face.solid < 0) return around;
+  for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
+    int run[2] = {0, 0};
+    for (int side = 0; side < 2; ++side)
+      for (int k = 1; k <= kNear; ++k) {
+        const int u = x + (side ? -k : k) * dx, v = y + (side ? -k : k) * dy;
+        if (!inside(u, v)) break;
+        if (!(centre(u, v) == face)) {
+          around.beside = 6.0 * flags_.depthStep();
+          break;
+        }
+        run[side] = k;
+      }
+    around.onPlane = around.onPlane && ((run[0] > 0 && run[1] > 0) || run[0] > 1 || run[1] > 1);
+  }
+  const auto& shape = picture_.scene().solids[static_cast<std::size_t>(face.solid)].shape;
+  if (!std::holds_alternative<reference::Ball>(shape)) return around;
+  for (int v = y - 1; v <= y + 1; ++v)
+    for (int u = x - 1; u <= x + 1; ++u) around.onPlane = around.onPlane && inside(u, v) && centre(u, v) == face;
+  around.beside += 5.0 * flags_.depthStep();
+  return around;
+}
+
+Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
+  Vec4 sum(0.0), squares(0.0), low(0.0), high(0.0);
+  const Face& face = centre(x, y);
+  const Vec4 behind(beauty_.at(x, y));
+  const double step = flags_.depthStep(), reach = std::max(1.0, 2.0 * flags_.filter.radius);
+  const bool flat =
+      face.solid < 0 ||
+      reference::depthOfPlane(picture_.scene(), face, reference::rayThrough(picture_.scene().eye, x + 0.5, y + 0.5));
+  const double bend = flat || flags_.passes == 1 ? 0.0 : bendOf(x, y);
+  std::vector<Column> columns;
+  for (const glm::dvec2& place : places_) columns.push_back(picture_.columnAt(x + place.x, y + place.y));
+  const double margin = marginOf(columns);
+  const auto depthOf = [&](const Column& column) {
+    return flat ? reference::depthOfPlane(picture_.scene(), face, column.ray).value_or(kNothing) : column.opaque.z;
+  };
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Vec2 at = Vec2(x, y) + places_[i];
+    const Vec4 nominal = valueOf(reference::Picture::shownBefore(columns[i], face, depthOf(columns[i])), behind);
+    Range range;
+    range.take(nominal);
+    const auto take = [&](const Column& column) {
+      const double z = depthOf(column), farther = (2.0 * step + around.beside) * reach * z + bend;
+      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend, z == kNothing ? z : z + farther,
+               behind, range);
+    };
+    take(columns[i]);
+    for (const double part : margin > kWide ? std::vector<double>{1.0, 0.6, 0.3} : std::vector<double>{1.0})
+      for (const Vec2 off : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)})
+        take(picture_.columnAt(at.x + part * margin * off.x, at.y + part * margin * off.y));
+    if (band_ > 0.0)
+      for (const int side : {-1, 1}) take(picture_.columnAt(at.x, at.y, {band_, side}));
+    sum += nominal;
+    squares += nominal * nominal;
+    low += range.low;
+    high += range.high;
+  }
+  const double count = static_cast<double>(places_.size());
+  Statement statement{Judged::inner, sum / count, Vec4(0.0), Vec4(0.0)};
+  statement.variance = glm::max(squares / count - statement.right * statement.right, Vec4(0.0));
+  const double brightest = std::max({1.0, high.r / count, high.g / count, high.b / count});
+  statement.allowed = glm::max(high / count - statement.right, statement.right - low / count) + kRounding * brightest;
+  return statement;
+}
+
+Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
+  Vec4 sum(0.0), squares(0.0);
+  double weights = 0.0, weightSquares = 0.0;
+  Range seen;
+  seen.take(inner.right);
+  samples_.under(x, y, [&](const Sampled& sample, double weight) {
+    seen.take(sample.value);
+    sum += weight * sample.value;
+    squares += weight * sample.value * sample.value;
+    weights += weight;
+    weightSquares += weight * weight;
+  });
+  const Vec4 mean = sum / weights;
+  // What is smaller than the distance of places is met by the passes or by these, and by chance.
+  const Vec4 variance = glm::max(squares / weights - mean * mean, inner.variance);
+  if (flags_.passes <= kFewPasses)
+    return {Judged::filtered, mean, inner.allowed + glm::max(seen.high - mean, mean - seen.low), variance};
+  const double noise = 1.0 / flags_.passes + weightSquares / (weights * weights);
+  return {Judged::filtered, mean, inner.allowed + 3.0 * glm::sqrt(variance * noise), variance};
+}
+
+// Beside an edge and a third face a pixel of one face is no telling from one that is mixed a little.
+bool Statements::maybeTakenApart(int x, int y) const {
+  if (!flags_.edges) return false;
+  std::vector<Face> faces;
+  bool beside = false;
+  for (int v = y - 3; v <= y + 3; ++v)
+    for (int u = x - 3; u <= x + 3; ++u) {
+      if (!inside(u, v)) continue;
+      if (std::find(faces.begin(), faces.end(), centre(u, v)) == faces.end()) faces.push_back(centre(u, v));
+      beside = beside || (std::abs(u - x) < 2 && std::abs(v - y) < 2 && !(centre(u, v) == centre(x, y)));
+    }
+  return beside && faces.size() > 2;
+}
+
+std::vector<Statement> Statements::of(int x, int y) const {
+  const Surroundings around = surroundingsOf(x, y);
+  if (flags_.passes == 1) return {innerAt(x, y, around)};
+  const bool alone = around.faces.size() == 1 && around.faces[0] == centre(x, y);
+  if (alone && around.onPlane && !maybeTakenApart(x, y)) {
+    const Statement inner = innerAt(x, y, around);
+    return {inner, filteredAt(x, y, inner)};
+  }
+  if (const auto edge = edgeAt(x, y, around)) return {*edge};
+  return {mixedAt(x, y)};
+}
+
+}  // namespace pellucid::test

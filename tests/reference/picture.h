@@ -1,0 +1,60 @@
+// A whole picture of a scene in double precision: rays through places of the pixels, opaque closed forms, transparent
+// triangles by a test of its own, sorted along each ray. Includes nothing of Pellucid's but the scene's numbers.
+#pragma once
+#include <functional>
+
+#include "tests/reference/solids.h"
+#include "tests/reference/sorted_over.h"
+
+namespace pellucid::reference {
+
+// A transparent surface on a ray.
+struct Crossing {
+  Layer layer;         // with its planar depth
+  double steep = 1.0;  // how much farther the ray goes for a metre across the surface, at least 1
+  Face on;             // Mesh::on
+  int mesh = -1;
+};
+// Everything on one ray.
+struct Column {
+  Ray ray;
+  Met opaque;
+  std::vector<Crossing> crossings;  // nearest first, those behind what is opaque as well
+};
+// Masks are cut as if alpha were higher (side 1) or lower (-1) by half of what it changes by, along both axes of the
+// picture, over a part of a pixel: where a rim is drawn as a ramp, it lies in between.
+struct CutBand {
+  double edge = 0.0;  // that part
+  int side = 0;
+};
+// What layers do to the background.
+struct Shown {
+  Vec3 light{0.0}, transmission{1.0};
+  Vec3 over(const Vec3& background) const { return light + transmission * background; }
+};
+
+// Answers for rays through one scene, which must outlive it.
+class Picture {
+ public:
+  explicit Picture(const PictureScene& scene);
+  const PictureScene& scene() const { return scene_; }
+  Column columnAt(double x, double y, const CutBand& band = {}) const;
+  // What is shown of an opaque face that lies at depth z: what lies on it is in front.
+  static Shown shownBefore(const Column& column, const Face& face, double z);
+  static Shown shownBefore(const Column& column) { return shownBefore(column, column.opaque.face, column.opaque.z); }
+  // Of what is opaque, 0 and clear where there is nothing.
+  Vec4 background(const Column& column) const;
+  // The picture at a place: sorted light over what is opaque, and how much of it is there.
+  Vec4 at(const Column& column) const;
+
+ private:
+  struct Bounds {  // of a triangle in the picture, pixels
+    double x0, y0, x1, y1;
+  };
+  Bounds boundsOf(const Mesh& mesh, const std::array<int, 3>& triangle) const;
+
+  const PictureScene& scene_;
+  std::vector<std::vector<Bounds>> bounds_;  // by mesh and triangle
+};
+
+}  // namespace pellucid::reference

@@ -1,0 +1,87 @@
+// The numbers of a small picture, as picture.h renders it: closed forms that are opaque, meshes that are transparent.
+// Includes nothing of Pellucid's. World space is right-handed, lengths are metres.
+#pragma once
+#include <array>
+#include <glm/glm.hpp>
+#include <variant>
+#include <vector>
+
+namespace pellucid::reference {
+
+using Vec2 = glm::dvec2;
+using Vec3 = glm::dvec3;
+using Vec4 = glm::dvec4;
+
+struct Eye {
+  Vec3 at{0.0};
+  glm::dmat3 axes{1.0};  // columns: right, up, backwards; orthonormal
+  Vec2 half{0.5, 0.5};   // half of the picture at distance 1, or in metres where rays are parallel
+  bool parallel = false;
+  int width = 32, height = 24;                // pixels that are rendered
+  int displayWidth = 32, displayHeight = 24;  // of the whole picture, of which those are a part
+  int firstX = 0, firstY = 0;                 // that begins there
+};
+
+struct Plane {
+  Vec3 point, normal;
+};
+struct Ball {
+  Vec3 centre;
+  double radius;
+};
+struct Box {
+  Vec3 centre;
+  glm::dmat3 axes;  // columns, orthonormal
+  Vec3 half;
+};
+// Opaque, of one colour.
+struct Solid {
+  std::variant<Plane, Ball, Box> shape;
+  Vec3 colour{0.5};
+};
+
+// A face of a solid: a box has six of them.
+struct Face {
+  int solid = -1, side = 0;
+  bool operator==(const Face&) const = default;
+};
+
+enum class Wrap { repeat, mirror, clamp };
+struct Texels {
+  int width = 1, height = 1;
+  std::vector<Vec4> values;  // linear light and straight alpha, row 0 at v = 0
+  Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
+  bool nearest = false;
+};
+
+enum class Covering { blend, mask };
+// An unlit surface: what it shows is its colour, and what it covers lets nothing through.
+struct Coat {
+  Vec4 colour{1.0};
+  Covering covering = Covering::blend;
+  double cutoff = 0.5;
+  bool bothSides = true;
+  int texture = -1;        // that multiplies the colour
+  glm::dmat3 fromUv{1.0};  // of texture coordinates
+};
+
+struct Corner {
+  Vec3 at{0.0};  // world
+  Vec2 uv{0.0};
+  Vec4 colour{1.0};
+};
+struct Mesh {
+  std::vector<Corner> corners;
+  std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from their front
+  Coat coat;
+  Face on;  // on which all of it lies, if any: there it is in front, whatever its corners round to
+};
+
+struct PictureScene {
+  Eye eye;
+  std::vector<Solid> solids;
+  std::vector<Texels> textures;
+  std::vector<Mesh> meshes;
+};
+
+}  // namespace pellucid::reference
