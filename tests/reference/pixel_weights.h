@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/reference/picture.h"
+#include "tests/reference/traced_picture.h"
 
 namespace pellucid::reference {
 

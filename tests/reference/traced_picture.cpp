@@ -1,4 +1,4 @@
-#include "tests/reference/picture.h"
+#include "tests/reference/traced_picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tests/reference/solids.h"
+#include "tests/reference/closed_solids.h"
 
 #include <cmath>
 

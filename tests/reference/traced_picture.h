@@ -3,7 +3,7 @@
 #pragma once
 #include <functional>
 
-#include "tests/reference/solids.h"
+#include "tests/reference/closed_solids.h"
 #include "tests/reference/sorted_over.h"
 
 namespace pellucid::reference {
