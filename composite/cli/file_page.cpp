@@ -17,7 +17,8 @@ Page pageWithScene(const std::string& file, const std::string& text, const ReadO
     ScenePreview preview = previewOf(file, scenes, read, camera);
     const SceneLook look = lookAt(preview);
     const Shot& shot = preview.compositor->shot();
-    return inspectPage(shot.opaque.document, text, UnderstoodShot{&shot.opaque, shot.camera}, look);
+    const std::optional<Camera> seenBy = shot.hasCamera ? std::optional(shot.camera) : std::nullopt;
+    return inspectPage(shot.opaque.document, text, UnderstoodShot{&shot.opaque, seenBy}, look);
   } catch (const Error& error) {
     // Its sentences name flags of that verb.
     throw Error(error.exitCode(), std::string("composite says: ") + error.what());

@@ -112,7 +112,7 @@ SceneLook lookAt(ScenePreview& preview) {
     look.parts.push_back({name, node.least, node.most, node.transparent});
     table.rows.push_back(rowOf(name, node));
   }
-  look.tables.push_back(std::move(table));
+  if (!table.rows.empty()) look.tables.push_back(std::move(table));
   PagePicture composited{"composited at pixel centres",
                          Image<glm::vec3>(result.picture.rgba.width(), result.picture.rgba.height())};
   for (std::size_t i = 0; i < composited.rgb.size(); ++i) composited.rgb[i] = glm::vec3(result.picture.rgba[i]);

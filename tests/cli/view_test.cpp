@@ -118,6 +118,18 @@ TEST_F(View, InspectShowsWhatWouldBeCompositedWhere) {
   EXPECT_NEAR(covered, edge * edge, 2 * edge + 1) << "a pixel at each edge";
 }
 
+TEST_F(View, DeepFilesOverAPictureNeedNoCamera) {
+  writeOpaque(options.folder + "/opaque.exr");
+  writeGlb(options.folder + "/scene.glb", {Quad{{-.5f, -.5f, -3}, {1, 0, 0}, {0, 1, 0}, unlit(1, 0, 0, .5f)}});
+  ASSERT_EQ(run({"fragments", "opaque.exr", "scene.glb", "-o", "deep.exr", "--camera", "fit"}).code, 0);
+  const Ended ended = run({"inspect", "opaque.exr", "--html", "page.html", "--scene", "deep.exr"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string page = slurp(options.folder + "/page.html");
+  EXPECT_NE(page.find("at most 1 on one."), std::string::npos);
+  EXPECT_EQ(page.find("class=\"plan\""), std::string::npos) << "nobody says where the camera is";
+  EXPECT_EQ(page.find("<h2>Scene</h2>"), std::string::npos) << "a deep file has no nodes";
+}
+
 TEST_F(View, InspectRefusesWhatThePageAloneReads) {
   writeOpaque(options.folder + "/opaque.exr");
   struct Row {
