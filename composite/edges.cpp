@@ -24,6 +24,7 @@ constexpr double kContrast = 1.0 / 16.0;
 constexpr double kOffLine = 0.25;
 constexpr double kBetter = 0.8;         // continued colours must lie so much nearer to the line
 constexpr double kWhole = 1.0 / 64.0;   // alpha within it of 1 or 0 is that of a whole surface, or of nothing
+constexpr double kLeastOwn = 0.25;      // of a pixel whose neighbours lie mostly on its own surface
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
 
 enum class Side : std::uint8_t { own, nearer, farther };
@@ -345,7 +346,9 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
   edge.x = x;
   edge.y = y;
   edge.share = mixture->share;
-  // A straight edge leaves at least half of the pixel to the surface at its centre.
+  // A straight edge leaves at least half of the pixel to the surface at its centre; with much less of it colours were
+  // taken from where they do not belong.
+  if (mostlyOwn && (other == Side::nearer ? 1.0 - edge.share : edge.share) < kLeastOwn) return std::nullopt;
   if (mostlyOwn) edge.share = other == Side::nearer ? std::min(edge.share, 0.5) : std::max(edge.share, 0.5);
   if (!(edge.share > kPure && edge.share < 1.0 - kPure)) return std::nullopt;
   edge.nearer = other == Side::nearer ? *beside : *own;

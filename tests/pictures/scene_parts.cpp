@@ -136,6 +136,15 @@ void SceneMaker::drawEye(double farOff) {
   worldFromEye_[3] = glm::dvec4(eye.at, 1.0);
 }
 
+void SceneMaker::look(int width, int height, double half) {
+  reference::Eye& eye = scene_.numbers.eye;
+  eye.width = eye.displayWidth = width;
+  eye.height = eye.displayHeight = height;
+  eye.firstX = eye.firstY = 0;
+  eye.parallel = false;
+  eye.half = {half * width / height, half};
+}
+
 Vec3 SceneMaker::at(double x, double y, double z) const {
   const double scale = parallel() ? 1.0 : z;
   return {x * half(0) * scale, y * half(1) * scale, -z};

@@ -45,6 +45,8 @@ class SceneMaker {
   // A place at a depth, at parts (-1 to 1) of the picture.
   Vec3 at(double x, double y, double z) const;
   DrawnScene& scene() { return scene_; }
+  // Of one's own making, instead of what was drawn: a whole picture through a pinhole, `half` of it high at distance 1.
+  void look(int width, int height, double half);
   DrawnScene finish();
 
  private:

@@ -87,7 +87,7 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
   const double astray = kNoShare + 6.0 * (impurity + stored) / contrast;
   Statement statement{Judged::edge, samples_.mean(x, y, &Sampled::value), Vec4(kRounding + stored), {}};
   // What layers show and what shines through them may be dealt by shares that are astray, each by itself.
-  const Vec4 brightest = glm::max(glm::max(ranges[0].high, ranges[1].high), Vec4(beauty_.at(x, y)));
+  const Vec4 brightest = glm::max(glm::max(ranges[0].high, ranges[1].high), glm::max(ownColour, otherColour));
   statement.allowed +=
       part * (ranges[0].high - ranges[0].low) + (1.0 - part) * (ranges[1].high - ranges[1].low) + astray * brightest;
   return statement;

@@ -130,6 +130,12 @@ Outcome runTrial(const Trial& trial, const std::string& folder, const std::share
   Random random(seedOf(trial));
   const DrawnScene scene = drawScene(trial.kind, random);
   const DrawnFlags flags = drawFlags(scene, random);
+  std::ofstream(folder + "/number") << fmt::format("{} {}\n", trial.kind, trial.seed);
+  return compositeAndJudge(scene, flags, folder, kept);
+}
+
+Outcome compositeAndJudge(const DrawnScene& scene, const DrawnFlags& flags, const std::string& folder,
+                          const std::shared_ptr<KeptWork>& kept) {
   const reference::Picture picture(scene.numbers);
   const reference::Samples samples(picture, flags.filter, kPlacesAcross);
   writeOpaque(folder + "/opaque.exr", picture, samples, flags.form);
@@ -137,8 +143,8 @@ Outcome runTrial(const Trial& trial, const std::string& folder, const std::share
   std::vector<std::string> words{folder + "/opaque.exr", folder + "/glass.glb", "-o", folder + "/out.exr"};
   words.insert(words.end(), flags.words.begin(), flags.words.end());
   Outcome outcome;
-  outcome.kind = trial.kind;
-  std::ofstream(folder + "/command") << fmt::format("# {} {}\n{}\n", trial.kind, trial.seed, commandOf(flags));
+  outcome.kind = scene.kind;
+  std::ofstream(folder + "/command") << commandOf(flags) << "\n";
   try {
     const Request request = requestOf(words);
     Compositor compositor(request, nullptr, nullptr, kept);

@@ -33,9 +33,12 @@ struct Trial {
   std::string kind;
   std::uint64_t seed = 0;
 };
-// Draws into `folder`, which keeps opaque.exr, glass.glb and, where the picture differs, `command`, right.exr with what
-// is right and what is allowed, and out.exr.
+// Draws the trial's scene and flags, and goes on as below.
 Outcome runTrial(const Trial& trial, const std::string& folder, const std::shared_ptr<KeptWork>& kept);
+// Writes into `folder` opaque.exr, glass.glb and `command`, and where the picture differs out.exr and right.exr: what
+// is right, and in the layer `allowed` how far off it sampling may lead.
+Outcome compositeAndJudge(const DrawnScene& scene, const DrawnFlags& flags, const std::string& folder,
+                          const std::shared_ptr<KeptWork>& kept);
 
 // What the rays of the passes meet in a pixel, by the reference: to look for the cause of a difference.
 std::string raysOf(const Trial& trial, int x, int y);
