@@ -69,11 +69,35 @@ std::optional<int> framesOf(const ExrAttribute& attribute, double rate) {
   return count;
 }
 
+std::optional<OpenShutter> shutterOf(const ExrAttribute& attribute) {
+  if (attribute.type != "string") return std::nullopt;
+  const char *at = attribute.bytes.data(), *end = at + attribute.bytes.size();
+  OpenShutter shutter;
+  const auto [colon, first] = std::from_chars(at, end, shutter.open);
+  if (first != std::errc() || colon == end || *colon != ':') return std::nullopt;
+  const auto [next, second] = std::from_chars(colon + 1, end, shutter.close);
+  const bool numbers = second == std::errc() && next == end && std::abs(shutter.open) <= kLongestShutter &&
+                       std::abs(shutter.close) <= kLongestShutter;
+  return numbers && shutter.open <= shutter.close ? std::optional(shutter) : std::nullopt;
+}
+
 }  // namespace
+
+std::string shutterText(const OpenShutter& shutter) {
+  char text[64];
+  char* end = std::to_chars(text, text + sizeof text, shutter.open).ptr;
+  *end++ = ':';
+  return {text, std::to_chars(end, text + sizeof text, shutter.close).ptr};
+}
 
 HeaderTime headerTimeOf(const ExrDocument& document) {
   HeaderTime time;
   if (const ExrAttribute* rate = find(document, "framesPerSecond")) time.framesPerSecond = rateOf(*rate);
+  if (const ExrAttribute* shutter = find(document, kShutterAttribute)) time.shutter = shutterOf(*shutter);
+  if (const ExrAttribute* exposure = find(document, "expTime")) {
+    const auto seconds = valueOf<float>(*exposure, "float");
+    if (seconds && std::isfinite(*seconds) && *seconds > 0.0f) time.exposure = static_cast<double>(*seconds);
+  }
   if (const ExrAttribute* frame = find(document, "Frame")) {
     time.frame = wholeNumber(*frame);
     if (time.frame) time.frameBy = "attribute Frame";

@@ -7,10 +7,23 @@
 
 namespace pellucid {
 
+// What our own producers write: "OPEN:CLOSE", as --shutter takes it. No other producer is known that says when the
+// shutter opens and closes.
+constexpr const char* kShutterAttribute = "pellucid:shutter";
+constexpr double kLongestShutter = 1e4;  // frames away from the frame
+
+// In frames around the frame, the first not above the second.
+struct OpenShutter {
+  double open = 0.0, close = 0.0;
+};
+std::string shutterText(const OpenShutter& shutter);  // reads back to the same bits
+
 struct HeaderTime {
   std::optional<int> frame;
   std::string frameBy;                    // "attribute Frame", "attribute timeCode"; "" without a frame
   std::optional<double> framesPerSecond;  // of the attribute of that name, > 0
+  std::optional<OpenShutter> shutter;     // of kShutterAttribute
+  std::optional<double> exposure;         // seconds, of the attribute expTime: how long, but not when
 };
 
 // Of the first part that says it: `Frame`, a text or a number as Blender writes it, else `timeCode` (SMPTE 12M) counted

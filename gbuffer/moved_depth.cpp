@@ -138,7 +138,7 @@ void fill(Image<std::uint32_t>& bits) {
 }  // namespace
 
 void depthFrom(const DepthPlanes& planes, const GBuffer& gbuffer, const Camera& taken, const Camera& from,
-               glm::dvec2 sample, Image<float>& viewZ) {
+               glm::dvec2 sample, Image<float>& viewZ, Image<std::uint8_t>* unseen) {
   const Carrier carrier(gbuffer, taken, from);
   const int width = gbuffer.data.width(), height = gbuffer.data.height();
   Image<std::uint32_t> bits(width, height, kUncovered);
@@ -148,6 +148,10 @@ void depthFrom(const DepthPlanes& planes, const GBuffer& gbuffer, const Camera& 
       carry(sky ? DepthPlane{} : planes.at(x, y), sky, glm::dvec2(x, y), carrier, sample, bits);
     }
   });
+  if (unseen) {
+    *unseen = Image<std::uint8_t>(width, height, 0);
+    for (std::size_t i = 0; i < bits.size(); ++i) (*unseen)[i] = bits[i] == kUncovered ? 1 : 0;
+  }
   fill(bits);
   for (std::size_t i = 0; i < bits.size(); ++i) viewZ[i] = std::bit_cast<float>(bits[i]);
 }

@@ -1,5 +1,7 @@
 // The opaque depth of a picture as another camera would have it: at another time, or from another point of the lens.
 #pragma once
+#include <cstdint>
+
 #include "gbuffer/depth_plane.h"
 
 namespace pellucid {
@@ -11,7 +13,8 @@ namespace pellucid {
 //   from    the other one
 //   sample  where in the pixel, (0..1, y down)
 //   viewZ   out, of the data window: planar metres along `from`'s axis, +inf where nothing is hit
+//   unseen  out, where it is not null: 1 where nothing that the picture shows landed, else 0
 void depthFrom(const DepthPlanes& planes, const GBuffer& gbuffer, const Camera& taken, const Camera& from,
-               glm::dvec2 sample, Image<float>& viewZ);
+               glm::dvec2 sample, Image<float>& viewZ, Image<std::uint8_t>* unseen = nullptr);
 
 }  // namespace pellucid

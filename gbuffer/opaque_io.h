@@ -18,6 +18,7 @@ struct SideFile {
   std::string name;  // its layers are called so, "N"; "" of depth
   std::string path;
   std::string channel;  // of depth; "" resolves it
+  bool operator==(const SideFile&) const = default;
 };
 
 struct ReadOptions {
@@ -32,6 +33,7 @@ struct ReadOptions {
   std::optional<double> metresPerUnit;  // --unit; without it the producer's, else 1
   // Windows and camera alone: no pixel is looked at, because the camera that converts depth is not chosen yet.
   bool framingAlone = false;
+  bool operator==(const ReadOptions&) const = default;
 };
 
 // What was chosen, by name and why, for `inspect` and for messages.

@@ -67,8 +67,15 @@ class HeaderReader {
   const std::string& path_;
 };
 
-Camera cameraOf(const HeaderReader& header) {
-  const std::vector<double> n = header.numbers("pellucid:camera", 23, header.text("pellucid:camera"));
+// Of the planes' own camera, and of the one that took the picture.
+struct CameraAttributes {
+  const char *numbers, *origin;
+};
+constexpr CameraAttributes kCamera{"pellucid:camera", "pellucid:cameraOrigin"},
+    kPictureCamera{"pellucid:pictureCamera", "pellucid:pictureCameraOrigin"};
+
+Camera cameraOf(const HeaderReader& header, const CameraAttributes& names = kCamera) {
+  const std::vector<double> n = header.numbers(names.numbers, 23, header.text(names.numbers));
   Camera camera;
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r) camera.viewFromWorld[c][r] = n[static_cast<std::size_t>(c * 4 + r)];
@@ -77,7 +84,7 @@ Camera cameraOf(const HeaderReader& header) {
   camera.centre = {n[19], n[20]};
   camera.rangeNear = n[21];
   camera.rangeFar = n[22];
-  camera.origin = header.text("pellucid:cameraOrigin");
+  camera.origin = header.text(names.origin);
   return camera;
 }
 
@@ -172,8 +179,8 @@ NewExr fileOf(const OitPlanes& planes, const RimPlanes& rims) {
        planes.info.normalisation == shading::PLD_NORMALISE_SPECTRAL ? "spectral" : "published"},
       {"pellucid:tier", planes.info.tier},
       {"pellucid:solidHash", planes.info.solidHash},
-      {"pellucid:camera", cameraText(planes.camera)},
-      {"pellucid:cameraOrigin", planes.camera.origin},
+      {kCamera.numbers, cameraText(planes.camera)},
+      {kCamera.origin, planes.camera.origin},
   };
   if (!planes.info.places.empty()) file.attributes["pellucid:places"] = planes.info.places;
   putSpace(planes.info.space, file.attributes);
@@ -222,36 +229,49 @@ bool isScatter(const ExrPart& part) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// The beauty as shadows leave it, and where; all of them or none.
-constexpr const char* kRelit[] = {"oit.relit.R", "oit.relit.G", "oit.relit.B", "oit.relit.changed"};
+// Channels of a picture's colours; all of them or none.
+using ColourNames = std::vector<const char*>;
+// The beauty as shadows leave it, and where; and as it is lit in one pass.
+const ColourNames kRelit{"oit.relit.R", "oit.relit.G", "oit.relit.B", "oit.relit.changed"};
+const ColourNames kNow{"oit.now.R", "oit.now.G", "oit.now.B"};
 
-void addRelit(const Image<glm::vec4>& relit, NewExr& file) {
-  if (relit.empty()) return;
-  for (int c = 0; c < 4; ++c) {
-    ExrChannel channel{kRelit[c], PixelType::float32, std::vector<std::byte>(relit.size() * sizeof(float))};
-    for (std::size_t i = 0; i < relit.size(); ++i)
-      std::memcpy(channel.bytes.data() + i * sizeof(float), &relit[i][c], sizeof(float));
+void addColours(const Image<glm::vec4>& colours, const ColourNames& names, NewExr& file) {
+  if (colours.empty()) return;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    ExrChannel channel{names[c], PixelType::float32, std::vector<std::byte>(colours.size() * sizeof(float))};
+    for (std::size_t i = 0; i < colours.size(); ++i)
+      std::memcpy(channel.bytes.data() + i * sizeof(float), &colours[i][static_cast<int>(c)], sizeof(float));
     file.channels.push_back(std::move(channel));
   }
 }
 
-Image<glm::vec4> relitOf(const ExrPart& part, const std::string& path) {
-  Image<glm::vec4> relit;
-  if (!part.find(kRelit[0])) return relit;
-  relit = Image<glm::vec4>(part.data.width(), part.data.height());
-  for (int c = 0; c < 4; ++c) {
-    const ExrChannel* channel = part.find(kRelit[c]);
+Image<glm::vec4> coloursOf(const ExrPart& part, const ColourNames& names, const std::string& path) {
+  Image<glm::vec4> colours;
+  if (!part.find(names[0])) return colours;
+  colours = Image<glm::vec4>(part.data.width(), part.data.height(), glm::vec4(0.0f));
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const ExrChannel* channel = part.find(names[c]);
     if (!channel || channel->type != PixelType::float32)
       throw MeaningError(
-          fmt::format("{}: {}: found no such float plane, expected all that accumulate writes", path, kRelit[c]));
-    for (std::size_t i = 0; i < relit.size(); ++i) relit[i][c] = channel->at(i);
+          fmt::format("{}: {}: found no such float plane, expected all that accumulate writes", path, names[c]));
+    for (std::size_t i = 0; i < colours.size(); ++i) colours[i][static_cast<int>(c)] = channel->at(i);
   }
-  return relit;
+  return colours;
+}
+
+std::optional<Camera> pictureCameraOf(const ExrPart& part, const std::string& path) {
+  if (!part.text(kPictureCamera.numbers)) return std::nullopt;
+  return cameraOf(HeaderReader(part, path), kPictureCamera);
 }
 
 NewExr fileOf(const PassPlanes& pass) {
   NewExr file = fileOf(pass.planes, pass.rims);
-  addRelit(pass.relit, file);
+  addColours(pass.relit, kRelit, file);
+  addColours(pass.now, kNow, file);
+  if (pass.pictureCamera) {
+    file.attributes[kPictureCamera.numbers] = cameraText(*pass.pictureCamera);
+    file.attributes[kPictureCamera.origin] = pass.pictureCamera->origin;
+  }
   file.attributes[kEdges] = pass.edges ? "resolve" : "off";
   if (!pass.pixelFilter.isPixelSquare()) file.attributes[kFilterAttribute] = filterText(pass.pixelFilter);
   return file;
@@ -325,7 +345,9 @@ std::vector<PassPlanes> readPasses(const std::string& path) {
     }
     PassPlanes pass;
     pass.planes = planesOf(part, path, &pass.rims);
-    pass.relit = relitOf(part, path);
+    pass.relit = coloursOf(part, kRelit, path);
+    pass.now = coloursOf(part, kNow, path);
+    pass.pictureCamera = pictureCameraOf(part, path);
     pass.edges = part.text(kEdges).value_or("off") == "resolve";
     pass.pixelFilter = filterOf(part, path);
     if (!passes.empty() && pass.planes.data != passes[0].planes.data)

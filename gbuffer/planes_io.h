@@ -1,6 +1,7 @@
 // OIT planes as an EXR file: layer `oit`, float, with a `pellucid:` header that says how the sums were made.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct PassPlanes {
   RimPlanes rims;
   // Of the first pass alone: the beauty as the layers' shadows leave it, and 1 where they changed it. Empty: nowhere.
   Image<glm::vec4> relit;
+  // Where shadows move with the passes: the beauty as it is lit in this one, without its alpha. Empty: as above.
+  Image<glm::vec4> now;
+  // Of the first pass alone: the camera that took the picture, where passes have their own times or points of the lens.
+  std::optional<Camera> pictureCamera;
   PixelFilter pixelFilter;  // that the passes' places were drawn from
   bool edges = false;       // at filtered edges of the picture each pass sees one of the two surfaces
 };

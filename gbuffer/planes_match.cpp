@@ -77,14 +77,14 @@ void expectSpaceOf(const ColourSpace& picture, const std::string& pictureFile, c
 }
 
 void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,
-                    const std::string& file) {
+                    const Camera& camera, const std::string& file) {
   const Pair pair{file, pictureFile};
   if (planes.info.places.empty()) {
     pair.expect("display window", planes.display, picture.display);
     pair.expect("data window", planes.data, picture.data);
   }
-  const bool overruled = planes.camera.origin.find("--camera") != std::string::npos;
-  if (picture.camera && !overruled) pair.expectView(planes.camera, *picture.camera);
+  const bool overruled = camera.origin.find("--camera") != std::string::npos;
+  if (picture.camera && !overruled) pair.expectView(camera, *picture.camera);
 }
 
 }  // namespace pellucid

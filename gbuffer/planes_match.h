@@ -30,7 +30,8 @@ void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, con
 // Planes belong over pictures of their display window (those of places: see OitInfo::places), data window and, where
 // the picture's file states one, camera. A camera that was given by --camera when the planes were made overrules the
 // file's then and here.
+//   camera  that took the picture: the planes' own, unless their passes see it from elsewhere
 void expectPlanesOf(const GBuffer& picture, const std::string& pictureFile, const OitPlanes& planes,
-                    const std::string& file);
+                    const Camera& camera, const std::string& file);
 
 }  // namespace pellucid

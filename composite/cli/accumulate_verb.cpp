@@ -34,6 +34,7 @@ void accumulate(const AccumulateFlags& flags, const FrameRun& frame, const std::
 void AccumulateFlags::addTo(CLI::App& verb) {
   RenderVerb what;
   what.listsToo = false;
+  what.blurs = true;
   what.resolves = false;
   what.keepsRimsApart = true;
   what.usual = UsualMethod::sums;

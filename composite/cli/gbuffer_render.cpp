@@ -56,10 +56,13 @@ Window parseSize(const std::string& text) {
   throw UsageError(fmt::format("--size: found '{}', expected WIDTHxHEIGHT, each from 1 to {}", text, kLongestEdge));
 }
 
-std::map<std::string, std::string> withFilter(const GbufferFlags& flags,
-                                              std::map<std::string, std::string> attributes) {
+std::map<std::string, std::string> withSettings(const GbufferFlags& flags,
+                                                std::map<std::string, std::string> attributes) {
   const PixelFilter filter = flags.filter.empty() ? PixelFilter() : parsePixelFilter(flags.filter);
   if (!filter.isPixelSquare()) attributes[kFilterAttribute] = filterText(filter);
+  if (const auto frame = flags.time.time().frame) attributes["Frame"] = std::to_string(*frame);
+  const std::optional<Shutter> shutter = flags.blur.shutterAsked();
+  if (shutter && shutter->opens()) attributes[kShutterAttribute] = shutterText({shutter->open, shutter->close});
   return attributes;
 }
 

@@ -63,8 +63,9 @@ void writePart(const std::string& path, const RenderedPart& part, const std::str
 std::optional<ShotMoment> playAnimations(const ShotTime& time, SceneOptions& options);
 Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
 
-// The attributes with that of the filter, where it is not the pixel's square.
-std::map<std::string, std::string> withFilter(const GbufferFlags& flags, std::map<std::string, std::string> attributes);
+// The attributes with those of the filter, where it is not the pixel's square, of the frame and of the shutter.
+std::map<std::string, std::string> withSettings(const GbufferFlags& flags,
+                                                std::map<std::string, std::string> attributes);
 void checkFilter(const GbufferFlags& flags);  // that the renderer honours it; throws UsageError
 
 // Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.

@@ -33,7 +33,7 @@ void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
   Stages stages;
   const RenderedPart part = renderPart(flags, false, stages, [&](double share) { frame.voice->stage("trace", share); });
   flags.preview.write(flags.colour.request(), flags.assetRoot, part.space, part.planes.beauty);
-  stages.time("write", [&] { writePart(flags.output, part, flags.renderer, withFilter(flags, frame.attributes)); });
+  stages.time("write", [&] { writePart(flags.output, part, flags.renderer, withSettings(flags, frame.attributes)); });
   nlohmann::json report{
       {"output", flags.output}, {"renderer", flags.renderer}, {"opaqueInstances", part.opaqueInstances}};
   reportSpace(part.space, report);

@@ -12,6 +12,7 @@ constexpr NamedLayer kLayers[] = {
     {"transmission", LayerName::transmission},
     {"depth", LayerName::depth},
     {"edges", LayerName::edges},
+    {"unseen", LayerName::unseen},
     {"D", LayerName::diffusion},
     {"delta", LayerName::delta},
     {"weight", LayerName::weight},
@@ -31,8 +32,9 @@ std::vector<LayerName> layerNames(const std::vector<std::string>& layers) {
 void addLayersOption(CLI::App& verb, std::vector<std::string>& layers) {
   std::vector<std::string> names;
   for (const NamedLayer& layer : kLayers) names.emplace_back(layer.text);
-  verb.add_option("--layers", layers,
-                  "Layers to add: transparent, transmission, depth; for debugging edges, D, delta, weight, count")
+  verb.add_option(
+          "--layers", layers,
+          "Layers to add: transparent, transmission, depth; for debugging edges, unseen, D, delta, weight, count")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
 }

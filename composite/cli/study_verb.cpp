@@ -55,6 +55,7 @@ void StudyFlags::addTo(CLI::App& verb) {
   RenderVerb what;
   what.precision = false;
   what.passes = false;
+  what.blurs = true;
   render.addTo(verb, what);
   verb.add_option("-o,--output", folder, "Folder for study.txt, .csv, .json, .svg, .png and .html")->required();
   verb.add_option("--methods", methods,

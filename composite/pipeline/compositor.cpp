@@ -66,6 +66,13 @@ void expectPlacesHold(const Request& request) {
     refuse("--apply-shadows", "composite", "planes hold no samples of the picture that could be dimmed");
 }
 
+// Shot and picture as a pass sees them.
+void moveTo(int pass, PassSettings& sample, PassMotion& motion, PassPicture& picture, Journal& journal) {
+  if (motion.moves()) journal.time("pose", [&] { motion.moveTo(pass, sample); });
+  picture.moveTo(sample.sample, pass, motion.picture());
+  motion.occlude(*picture.picture().gbuffer, sample);
+}
+
 // While it lives, the pass draws over another depth of the same picture. Without a pass there is nothing to draw.
 class DrawnOverPicture {
  public:
@@ -103,14 +110,38 @@ Compositor::Compositor(const Request& request, std::function<void(const std::str
       device_(kept_->device) {
   validate(request);
   validate(methodByFile(request));
-  shot_ = loadShot(request.shot, meetsRays(request), journal_);
+  takeOver(request);
   facts_ = factsOf(*shot_);
+}
+
+void Compositor::takeOver(const Request& request) {
+  try {
+    shot_ = loadShot(request.shot, meetsRays(request), journal_, std::move(kept_->shot));
+  } catch (...) {
+    kept_->forget();
+    throw;
+  }
+  if (shot_->keptPicture) {
+    depthPlanes_ = std::move(kept_->depthPlanes);
+    edges_ = std::move(kept_->edges);
+  }
+  if (shot_->keptScene) triangles_ = std::move(kept_->triangles);
+  placed_ = !triangles_;
+  kept_->forget();  // what is left is of another shot
 }
 
 Compositor::~Compositor() {
   const Device::Turn turn(device_);
-  triangles_.reset();
   lighting_.reset();
+  if (kept_.use_count() == 1 || !finished_ || shot_->lender) {
+    triangles_.reset();
+  } else {
+    kept_->forget();
+    kept_->shot = std::move(shot_);
+    kept_->triangles = std::move(triangles_);
+    kept_->depthPlanes = std::move(depthPlanes_);
+    kept_->edges = std::move(edges_);
+  }
   if (kept_.use_count() == 1) device_.close();
 }
 
@@ -132,6 +163,11 @@ TransparentPass* Compositor::triangles() {
       return std::make_unique<TransparentPass>(context, shot_->scene, shot_->opaque.gbuffer, shot_->camera);
     });
   }
+  if (!std::exchange(placed_, true))
+    journal_.time("upload", [&] {
+      triangles_->pose(shot_->camera);
+      triangles_->over(shot_->opaque.gbuffer, shot_->camera);
+    });
   return triangles_.get();
 }
 
@@ -168,7 +204,7 @@ Compositor::Run Compositor::prepare(const Request& request) {
   run.plan = plan(request);
   run.request = &request;
   journal_.note(run.plan.notes);
-  if (request.shutter && request.shutter->opens() && !shot_->moment)
+  if (run.plan.shutter && run.plan.shutter->opens() && !shot_->moment)
     throw MeaningError(
         fmt::format("{}: --shutter: found no frame in its header (Frame or timeCode), expected one, or --frame N or "
                     "--time SECONDS",
@@ -216,7 +252,7 @@ Window Compositor::paintedArea(const Plan& plan, const Run& run) const {
 }
 
 Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run& run, Journal& journal,
-                       RunCounts& counts) {
+                       RunCounts& counts, Image<float>* unseen) {
   const std::unique_ptr<EdgePasses> edges = edgePasses(plan);
   PassMotion motion(*run.request, plan, run.lens, *shot_, triangles(), device_);
   PassSettings pass = settings;
@@ -224,17 +260,17 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
   const Window area = motion.moves() ? data : paintedArea(plan, run);
   if (area != data) pass.area = area;  // else passes at other resolutions take the settings too
   PassPicture moving(run.lighting->picture, depthPlanes(plan), edges.get(), triangles(), shot_->camera, area);
+  if (unseen) moving.countUnseen();
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
   VeilMean mean;
   do {
     mean = VeilMean();
+    motion.begin();
     for (int i = 0; i < plan.passes; ++i) {
       PassSettings sample = samplePass(pass, plan, i);
       journal.reached(static_cast<double>(i) / plan.passes);
-      if (motion.moves()) journal.time("pose", [&] { motion.moveTo(i, sample); });
-      moving.moveTo(sample.sample, i, motion.picture());
-      motion.occlude(*moving.picture().gbuffer, sample);
+      moveTo(i, sample, motion, moving, journal);
       Veil veil = painter->paint(sample, i);
       journal.time("average", [&] {
         if (edges) edges->weigh(i, veil);
@@ -243,6 +279,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
       });
     }
   } while (!painter->settled());
+  if (unseen) *unseen = moving.unseenShare();
   journal.reached(1.0);
   return journal.time("average", [&] {
     Veil veil = mean.finish();
@@ -299,10 +336,13 @@ Result Compositor::cheapest(const Request& request, double tolerance) {
 }
 
 Result Compositor::painted(const Request& request, double holdTo) {
+  finished_ = false;
   const Run run = prepare(request);
   Result result;
   result.plan = run.plan;
-  result.veil = paint(run.plan, run.pass, run, journal_, result.counts);
+  Image<float> unseen;
+  result.veil = paint(run.plan, run.pass, run, journal_, result.counts,
+                      asks(request.layers, LayerName::unseen) ? &unseen : nullptr);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
   result.dataWindow = gbuffer.data;
   result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
@@ -323,6 +363,7 @@ Result Compositor::painted(const Request& request, double holdTo) {
   if (!request.layers.empty()) result.veil = widened(std::move(result.veil), gbuffer.data);
   result.layers = veilLayers(request.layers, result.veil);
   result.layers.insert(result.layers.end(), run.lighting->shadows.layers.begin(), run.lighting->shadows.layers.end());
+  if (!unseen.empty()) result.layers.push_back(unseenLayer(std::move(unseen)));
   if (asks(request.layers, LayerName::edges))
     result.layers.push_back(edgesLayer(gbuffer, run.plan.edges ? &edges(run.plan) : nullptr));
   if (wantsPlanes(request.layers)) {
@@ -335,6 +376,7 @@ Result Compositor::painted(const Request& request, double holdTo) {
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   result.stages = std::exchange(journal_.stages, Stages());
   result.device = device_.description();
+  finished_ = true;
   return result;
 }
 
@@ -348,6 +390,7 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
   const Request request = paintsBy<PaintSorted>(asked) ? bySums(asked) : asked;
   if (shot_->deepOpaque) expectPlacesHold(request);
   const Device::Turn turn(device_);
+  finished_ = false;
   const Run run = prepare(request);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
   const OtherSolids others(request.heldOutBy, gbuffer, shot_->opaque.space, run.plan.passes);
@@ -355,22 +398,24 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
   Plan sums = sumsPlanOf(run.plan, facts_);
   sums.heldOut = run.plan.heldOut;
   const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+  const Camera taken = shot_->camera;
+  PassMotion motion(request, run.plan, run.lens, *shot_, triangles(), device_);
   PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), triangles(), shot_->camera,
                      gbuffer.data);
-  const GBuffer& moved = *moving.picture().gbuffer;
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, run.plan, i);
     journal_.reached(static_cast<double>(i) / run.plan.passes);
     sample.weight = sums.fitsWeight ? run.pass.weight : sums.pass.weight;
     sample.normalisation = sums.pass.normalisation;
-    moving.moveTo(sample.sample, i);
+    moveTo(i, sample, motion, moving, journal_);
     PassPlanes made;
     if (others.empty()) {
       made = passPlanes(sums, sample, i, run, moving.picture(), request, counts);
     } else {
+      const GBuffer& moved = *moving.picture().gbuffer;
       const GBuffer held = others.before(moved, i);
-      const GBuffer heldAtCentres = others.before(gbuffer, i);
+      const GBuffer heldAtCentres = others.before(*moving.picture().centres, i);
       const DrawnOverPicture over(triangles(), held, moved, shot_->camera);
       made = passPlanes(sums, sample, i, run, {&held, &heldAtCentres, nullptr}, request, counts);
       others.addTo(made.planes, i);
@@ -380,11 +425,14 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
     made.edges = run.plan.edges;
     made.pixelFilter = run.plan.pixelFilter;
     if (i == 0) made.relit = relitPicture(*run.lighting);
+    if (i == 0 && motion.moves()) made.pictureCamera = taken;
+    if (motion.picture() && motion.picture()->gbuffer != &gbuffer) made.now = motion.picture()->gbuffer->beauty;
     shows = shows || anyLayers(made.planes);
     each(std::move(made));
   }
   if (!shows) noteThatNothingShows(*shot_, journal_);
   for (const auto& file : shot_->deep) journal_.note(file->notes());
+  finished_ = true;
   return counts;
 }
 

@@ -66,6 +66,8 @@ class Compositor {
 
  private:
   struct Run;  // what a request's steps share
+  // The shot, and of an earlier frame's work what still holds.
+  void takeOver(const Request& request);
   const Lighting& lightOf(const Request& request);
   TransparentPass* triangles();
   // Of the picture's depth, for passes away from pixel centres; null for a deep picture, whose samples have no planes.
@@ -80,7 +82,9 @@ class Compositor {
   Choice probed(const Run& run, double tolerance);
   PassPlanes passPlanes(const Plan& sums, const PassSettings& sample, int pass, const Run& run,
                         const LitPicture& picture, const Request& request, RunCounts& counts);
-  Veil paint(const Plan& plan, const PassSettings& settings, const Run& run, Journal& journal, RunCounts& counts);
+  //   unseen  is given PassPicture::unseenShare(), or null
+  Veil paint(const Plan& plan, const PassSettings& settings, const Run& run, Journal& journal, RunCounts& counts,
+             Image<float>* unseen = nullptr);
   Window paintedArea(const Plan& plan, const Run& run) const;
 
   Journal journal_;
@@ -90,11 +94,13 @@ class Compositor {
   mutable ShotFacts facts_;  // with the depths of the layers once a weight has asked
   mutable bool knowsDepths_ = false;
   std::unique_ptr<TransparentPass> triangles_;
+  bool placed_ = true;  // false as long as an earlier frame's stand as that frame had them
   std::unique_ptr<DepthPlanes> depthPlanes_;
   std::optional<std::vector<EdgePixel>> edges_;
   // The light of the last request; requests that differ in nothing that lights share it.
   std::unique_ptr<Lighting> lighting_;
   Request lit_;
+  bool finished_ = false;  // the last picture or planes, so that the next frame may take over what made them
 };
 
 }  // namespace pellucid

@@ -17,6 +17,9 @@ ShotFacts factsOf(const Shot& shot) {
   facts.hasCamera = shot.hasCamera;
   facts.moves = shot.moment && shot.files && shot.files->moves();
   facts.cameraMoves = facts.moves && shot.sceneCamera;
+  facts.shutter = shot.headerTime.shutter;
+  if (shot.headerTime.exposure && shot.moment)
+    facts.exposure = *shot.headerTime.exposure * shot.moment->framesPerSecond;
   facts.deepPicture = shot.deepOpaque != nullptr;
   facts.deepFiles = shot.deep.size();
   facts.deepScatters =

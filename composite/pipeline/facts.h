@@ -5,6 +5,7 @@
 #include <string>
 
 #include "composite/pipeline/shot.h"
+#include "gbuffer/header_time.h"
 #include "gbuffer/pixel_filter.h"
 
 namespace pellucid {
@@ -15,6 +16,8 @@ struct ShotFacts {
   bool hasCamera = true;
   bool moves = false;                      // an animation is played
   bool cameraMoves = false;                // and the camera may be among what it moves
+  std::optional<OpenShutter> shutter;      // of the picture's header
+  std::optional<double> exposure;          // frames, of the same: how long, but not when
   bool deepPicture = false;                // each sample of the opaque picture holds layers out on its own
   std::size_t deepFiles = 0;               // with transparent samples
   bool deepScatters = false;               // they say how they refract and diffuse

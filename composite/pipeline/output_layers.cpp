@@ -82,6 +82,12 @@ ExtraLayer edgesLayer(const GBuffer& gbuffer, const std::vector<EdgePixel>* edge
   return layer;
 }
 
+ExtraLayer unseenLayer(Image<float> share) {
+  ExtraLayer layer{"unseen", {}};
+  layer.channels.emplace_back("share", std::move(share));
+  return layer;
+}
+
 bool wantsPlanes(const std::vector<LayerName>& layers) {
   return std::any_of(layers.begin(), layers.end(), [](LayerName name) {
     return name == LayerName::diffusion || name == LayerName::delta || name == LayerName::weight ||

@@ -20,6 +20,8 @@ bool asks(const std::vector<LayerName>& layers, LayerName name);
 // is 0 and both depths are the pixel's.
 //   edges  null: nowhere
 ExtraLayer edgesLayer(const GBuffer& gbuffer, const std::vector<EdgePixel>* edges);
+// The share of the passes in which a pixel's opaque depth was taken from beside what the picture shows.
+ExtraLayer unseenLayer(Image<float> share);
 // The others show planes of the transparent pass, at pixel centres.
 bool wantsPlanes(const std::vector<LayerName>& layers);
 // The opaque picture with another beauty in it and more layers: a flat one keeps what is not touched, of a deep one

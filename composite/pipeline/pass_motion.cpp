@@ -1,7 +1,6 @@
 #include "composite/pipeline/pass_motion.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "composite/pipeline/foliage_step.h"
 #include "engine_bridge/scene/working_space.h"
@@ -22,7 +21,8 @@ PassMotion::PassMotion(const Request& request, const Plan& plan, const Lens& len
       shot_(shot),
       triangles_(triangles),
       device_(device),
-      poses_(request.shutter && request.shutter->opens() && shot.moment && shot.files && shot.files->moves()),
+      shutter_(plan.shutter.value_or(Shutter())),
+      poses_(shutter_.opens() && shot.moment && shot.files && shot.files->moves()),
       taken_(shot.camera),
       posed_(shot.camera),
       points_(passPoints(plan.passes)) {}
@@ -47,9 +47,8 @@ void PassMotion::moveTo(int pass, PassSettings& sample) {
   if (!moves()) return;
   const PassPoint& point = points_[static_cast<std::size_t>(pass)];
   if (poses_) {
-    const Shutter& shutter = *request_.shutter;
-    pose(shot_.moment->at(shutter.open + (shutter.close - shutter.open) * point.time));
-    if (shot_.sceneCamera && !shutter.holdsCamera)
+    pose(shot_.moment->at(shutter_.open + (shutter_.close - shutter_.open) * point.time));
+    if (shot_.sceneCamera && !shutter_.holdsCamera)
       posed_ = chooseCamera(request_.shot.camera, shot_.opaque.gbuffer, shot_.scene, request_.shot.opaque);
   }
   shot_.camera = throughLens(posed_, lens_, lensPoint(point.lens, lens_.blades));
@@ -81,39 +80,7 @@ void PassMotion::occlude(const GBuffer& gbuffer, PassSettings& sample) {
 }
 
 void PassMotion::relight(const Veil& veil, const GBuffer& base) {
-  ++relit_;
-  if (!pictureLight_ || pictureLight_->shadows.touched.empty()) return;
-  const Image<glm::vec4>& lit = pictureLight_->picture.gbuffer->beauty;
-  for (std::size_t i = 0; i < lit.size(); ++i) {
-    const glm::vec3 now(lit[i]), then(base.beauty[i]);
-    if (now == then) continue;
-    if (changed_.empty()) {
-      changed_ = Image<glm::dvec3>(base.data.width(), base.data.height(), glm::dvec3(0.0));
-      touched_ = Image<std::uint8_t>(base.data.width(), base.data.height(), 0);
-    }
-    const glm::vec3 passed = !veil.touched[i]  ? glm::vec3(1.0f)
-                             : veil.scatters() ? veil.direct[i]
-                                               : veil.transmission[i];
-    changed_[i] += glm::dvec3(passed) * (glm::dvec3(now) - glm::dvec3(then));
-    touched_[i] = 1;
-  }
-}
-
-void PassMotion::finish(Veil& mean) const {
-  for (std::size_t i = 0; i < touched_.size(); ++i) {
-    if (!touched_[i]) continue;
-    if (!mean.touched[i]) {
-      mean.touched[i] = 1;
-      mean.light[i] = glm::vec3(0.0f);
-      mean.transmission[i] = glm::vec3(1.0f);
-      mean.frontZ[i] = std::numeric_limits<float>::infinity();
-      if (mean.scatters()) {
-        mean.direct[i] = glm::vec3(1.0f);
-        mean.applied[i] = glm::vec4(0.0f);
-      }
-    }
-    mean.light[i] += glm::vec3(changed_[i] / static_cast<double>(relit_));
-  }
+  moving_.add(veil, picture() ? &picture()->gbuffer->beauty : nullptr, base.beauty);
 }
 
 }  // namespace pellucid

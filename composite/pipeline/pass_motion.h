@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
+#include "composite/moving_light.h"
 #include "composite/pass_points.h"
 #include "composite/pipeline/lighting.h"
 #include "composite/pipeline/plan.h"
-#include "composite/veil.h"
 #include "engine_bridge/gl/transparent_pass.h"
 
 namespace pellucid {
@@ -31,10 +31,12 @@ class PassMotion {
   // Gives the settings the occluders of leaves as they stand now.
   void occlude(const GBuffer& gbuffer, PassSettings& sample);
 
+  // Forgets what relight() has added up: all passes are painted once more.
+  void begin() { moving_ = MovingLight(); }
   // Adds up what shadows that move do to the picture behind each pass's veil, and puts it into the mean of the veils.
   //   base  the picture that the mean is composed over
   void relight(const Veil& veil, const GBuffer& base);
-  void finish(Veil& mean) const;
+  void finish(Veil& mean) const { moving_.finish(mean); }
 
  private:
   void pose(double seconds);
@@ -46,15 +48,14 @@ class PassMotion {
   TransparentPass* triangles_;
   Device& device_;
   Journal quiet_;  // what every pass would say again
+  Shutter shutter_;
   bool poses_ = false;
   Camera taken_;  // of the frame
   Camera posed_;  // of the pass's time, through the middle of the lens
   std::vector<PassPoint> points_;
   // Of the opaque picture, from where it was taken, and of the layers, from where the pass sees them.
   std::shared_ptr<const Lighting> pictureLight_, light_;
-  Image<glm::dvec3> changed_;  // by moving shadows, behind the veils; empty until there is something
-  Image<std::uint8_t> touched_;
-  int relit_ = 0;
+  MovingLight moving_;
 };
 
 }  // namespace pellucid

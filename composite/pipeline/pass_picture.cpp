@@ -1,5 +1,7 @@
 #include "composite/pipeline/pass_picture.h"
 
+#include <algorithm>
+
 #include "gbuffer/camera_match.h"
 #include "gbuffer/moved_depth.h"
 
@@ -34,6 +36,20 @@ PassPicture::~PassPicture() {
   if (planes_ && triangles_) triangles_->over(*centres_.gbuffer, camera_);
 }
 
+void PassPicture::moveDepth(glm::dvec2 sample) {
+  Image<std::uint8_t> unseen;
+  const bool counts = !unseen_.empty();
+  depthFrom(*planes_, *centres_.gbuffer, taken_, camera_, sample, moved_.viewZ, counts ? &unseen : nullptr);
+  for (std::size_t i = 0; i < unseen.size(); ++i) unseen_[i] += unseen[i];
+}
+
+Image<float> PassPicture::unseenShare() const {
+  Image<float> share(unseen_.width(), unseen_.height(), 0.0f);
+  for (std::size_t i = 0; i < share.size(); ++i)
+    share[i] = static_cast<float>(static_cast<double>(unseen_[i]) / std::max(counted_, 1));
+  return share;
+}
+
 void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
   if (lit) {
     picture_.centres = lit->centres;
@@ -43,11 +59,12 @@ void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
     else
       picture_.gbuffer = lit->gbuffer;
   }
+  ++counted_;
   if (!planes_) return;
   if (sameView(camera_, taken_))
     planes_->depthAt(sample, part_, moved_.viewZ);
   else
-    depthFrom(*planes_, *centres_.gbuffer, taken_, camera_, sample, moved_.viewZ);
+    moveDepth(sample);
   if (edges_) {
     edges_->depthAt(pass, moved_.viewZ);
     if (picture_.passWeight) edges_->weightAt(pass, passWeight_);

@@ -28,10 +28,16 @@ class PassPicture {
 
   //   lit  the picture as the pass's light has it; null: as the first one
   void moveTo(glm::dvec2 sample, int pass, const LitPicture* lit = nullptr);
+  // From now on, counts the passes in which a pixel's depth is none that the picture shows.
+  void countUnseen() { unseen_ = Image<int>(centres_.gbuffer->data.width(), centres_.gbuffer->data.height(), 0); }
+  // Their share of the passes that were counted, [0,1]: 0 where every pass sees the picture from where it was taken.
+  Image<float> unseenShare() const;
   // Of the pass that it was moved to; always the same object.
   const LitPicture& picture() const { return picture_; }
 
  private:
+  void moveDepth(glm::dvec2 sample);
+
   const LitPicture& centres_;
   const DepthPlanes* planes_;
   const EdgePasses* edges_;
@@ -41,6 +47,8 @@ class PassPicture {
   Window part_;    // in pixels of the data window
   GBuffer moved_;  // depth, and what says how to read it
   Image<float> passWeight_;
+  Image<int> unseen_;  // passes; empty while nobody asks
+  int counted_ = 0;
   LitPicture picture_;
 };
 

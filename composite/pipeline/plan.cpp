@@ -102,14 +102,30 @@ int lowResolutionOf(const Request& request, const ShotFacts& facts) {
   return facts.marksLowResolution ? request.lowResolution.factor.value_or(LowResolutionRequest::kDefault) : 1;
 }
 
-bool movesPicture(const Request& request, const ShotFacts& facts) {
-  const bool byCamera =
-      request.shutter && request.shutter->opens() && facts.cameraMoves && !request.shutter->holdsCamera;
+// As asked for; else as the picture was taken, where something moves and several passes can have their times.
+void chooseShutter(const Request& request, const ShotFacts& facts, Plan& plan) {
+  plan.shutter = request.shutter;
+  if (plan.shutter || !facts.moves || plan.passes == 1) return;
+  if (facts.shutter && (facts.shutter->open != 0.0 || facts.shutter->close != 0.0)) {
+    plan.shutter = Shutter{facts.shutter->open, facts.shutter->close, false};
+    plan.notes.push_back(fmt::format("shutter: {} by attribute {}; --shutter 0:0 keeps everything at the frame's time",
+                                     shutterText(*facts.shutter), kShutterAttribute));
+  } else if (facts.exposure) {
+    plan.notes.push_back(
+        fmt::format("shutter: attribute expTime says {0:.4g} frames but not when, and nothing is blurred; --shutter "
+                    "{1:.4g}:{2:.4g} "
+                    "does so about the frame",
+                    *facts.exposure, -0.5 * *facts.exposure, 0.5 * *facts.exposure));
+  }
+}
+
+bool movesPicture(const Request& request, const ShotFacts& facts, const std::optional<Shutter>& shutter) {
+  const bool byCamera = shutter && shutter->opens() && facts.cameraMoves && !shutter->holdsCamera;
   return byCamera || (request.lens.on() && request.lens.radius.value_or(1.0) > 0.0);
 }
 
 void noteBlur(const Request& request, const ShotFacts& facts, Plan& plan) {
-  if (request.shutter && request.shutter->opens() && !facts.moves)
+  if (plan.shutter && plan.shutter->opens() && !facts.moves)
     plan.notes.emplace_back("--shutter: nothing in the glTF moves, so that every pass sees the same");
   if (!plan.pictureMoves) return;
   plan.notes.emplace_back(
@@ -167,7 +183,8 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   plan.fog = request.fog.on();
   plan.passes = request.passes;
   chooseFilter(request, facts, plan);
-  plan.pictureMoves = movesPicture(request, facts);
+  chooseShutter(request, facts, plan);
+  plan.pictureMoves = movesPicture(request, facts, plan.shutter);
   noteBlur(request, facts, plan);
   plan.edges = !plan.pictureMoves && request.edges.value_or(EdgeRule::resolve) == EdgeRule::resolve &&
                plan.passes > 1 && !plan.heldOut;

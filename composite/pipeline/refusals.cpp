@@ -144,6 +144,8 @@ void dropUnread(Request& request) {
   if (request.passes == 1) {
     request.edges.reset();
     request.pixelFilter.reset();
+    request.shutter.reset();
+    request.lens = LensRequest();
   }
   const bool published = request.tier == Tier::published;
   if (!normalises(request) || (published && sums.normalisation == shading::PLD_NORMALISE_SPECTRAL))

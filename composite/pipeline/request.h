@@ -83,6 +83,7 @@ struct ColourRequest {
   std::string config;               // of OpenColorIO, a file; "" for the built-in one
   std::string configBy = "--ocio";  // who names it, for messages
   std::string workingSpace = "auto";
+  bool operator==(const ColourRequest&) const = default;
 };
 
 class MemoryPicture;  // memory_picture.h
@@ -147,7 +148,7 @@ struct LowResolutionRequest {
 };
 
 // Extra layers of the output.
-enum class LayerName { transparent, transmission, depth, edges, diffusion, delta, weight, count };
+enum class LayerName { transparent, transmission, depth, edges, unseen, diffusion, delta, weight, count };
 
 // Pixels whose colour is filtered over an edge of the opaque picture: taken apart into its two surfaces, or left as
 // one.

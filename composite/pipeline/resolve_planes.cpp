@@ -5,17 +5,22 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "composite/antialias.h"
 #include "composite/deep/placed_sums.h"
 #include "composite/edges.h"
+#include "composite/moving_light.h"
 #include "composite/picture_occluders.h"
 #include "composite/pipeline/not_finite.h"
 #include "composite/pipeline/nothing_drawn.h"
 #include "composite/pipeline/output_layers.h"
+#include "composite/pipeline/pass_picture.h"
 #include "composite/pipeline/resolve_step.h"
 #include "composite/pipeline/shot.h"
 #include "composite/rims.h"
+#include "gbuffer/camera_match.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/planes_io.h"
 #include "gbuffer/planes_match.h"
@@ -33,6 +38,10 @@ void checkRims(const RimRequest& request, bool apart) {
     if (isGiven && !apart)
       throw UsageError(
           fmt::format("{}: the planes carry no rims apart, expected those of accumulate --occlusion apart", flag));
+}
+
+const Camera& pictureCameraOf(const PassPlanes& first) {
+  return first.pictureCamera ? *first.pictureCamera : first.planes.camera;
 }
 
 // Takes from the sums what the opaque pixels beside the rims hide.
@@ -80,6 +89,16 @@ void addScatter(OitPlanes& sum, const OitPlanes& more, const std::string& file, 
     sum = more;
 }
 
+// The camera that took the picture, of whichever file names it.
+void takePictureCamera(const PlanesRequest& request, std::size_t file, const PassPlanes& more, PassPlanes& first) {
+  if (!more.pictureCamera) return;
+  const Camera& known = pictureCameraOf(first);
+  if (!sameView(*more.pictureCamera, known))
+    throw MeaningError(fmt::format("{}: camera of the picture: found {}, expected {} as in {}", request.planes[file],
+                                   viewText(*more.pictureCamera), viewText(known), request.planes[0]));
+  first.pictureCamera = more.pictureCamera;
+}
+
 // All files' passes, added pass by pass.
 std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) {
   std::vector<PassPlanes> passes = journal.time("read planes", [&] { return readPasses(request.planes[0]); });
@@ -103,10 +122,12 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
                                        filterText(more[0].pixelFilter), filterText(passes[0].pixelFilter),
                                        request.planes[0]));
       if (!more[0].relit.empty()) passes[0].relit = more[0].relit;
+      takePictureCamera(request, k, more[0], passes[0]);
       for (std::size_t i = 0; i < passes.size(); ++i) {
         const double factor = referenceFactor(more[i].planes.info.weight, passes[i].planes.info.weight);
         mergePlanes(passes[i].planes, more[i].planes, request.planes[0], request.planes[k]);
         addScatter(passes[i].scatter, more[i].scatter, request.planes[0], request.planes[k]);
+        if (!more[i].now.empty()) passes[i].now = more[i].now;
         if (!scaleWeights(more[i].rims, factor))
           refuseReference(more[i].planes, request.planes[k], passes[i].planes, request.planes[0]);
         passes[i].rims.add(more[i].rims);
@@ -133,8 +154,9 @@ void checkPlaces(const PlanesRequest& request, const OitPlanes& planes, const De
                     request.opaque));
 }
 
-void checkPlanes(const PlanesRequest& request, const OitPlanes& planes, const GBuffer& gbuffer) {
-  expectPlanesOf(gbuffer, request.opaque, planes, request.planes[0]);
+void checkPlanes(const PlanesRequest& request, const PassPlanes& first, const GBuffer& gbuffer) {
+  const OitPlanes& planes = first.planes;
+  expectPlanesOf(gbuffer, request.opaque, planes, pictureCameraOf(first), request.planes[0]);
   if (planes.published())
     for (const LayerName name : request.layers)
       if (name == LayerName::depth || name == LayerName::weight || name == LayerName::count)
@@ -144,16 +166,58 @@ void checkPlanes(const PlanesRequest& request, const OitPlanes& planes, const GB
 // Of which each pass saw one side; none where they saw whole pixels.
 std::vector<EdgePixel> edgesOf(const std::vector<PassPlanes>& passes, const GBuffer& gbuffer) {
   if (!passes[0].edges || passes.size() < 2) return {};
-  return edgePixels(gbuffer, DepthPlanes(gbuffer, passes[0].planes.camera));
+  return edgePixels(gbuffer, DepthPlanes(gbuffer, pictureCameraOf(passes[0])));
 }
 
-std::unique_ptr<EdgePasses> dealt(const std::vector<EdgePixel>& edges, const std::vector<PassPlanes>& passes) {
-  if (edges.empty()) return nullptr;
+std::vector<glm::dvec2> samplesOf(const std::vector<PassPlanes>& passes) {
   std::vector<glm::dvec2> samples;
   for (std::size_t i = 0; i < passes.size(); ++i)
     samples.push_back(samplePosition(static_cast<int>(i), static_cast<int>(passes.size()), passes[0].pixelFilter));
-  return std::make_unique<EdgePasses>(edges, std::move(samples));
+  return samples;
 }
+
+std::unique_ptr<EdgePasses> dealt(const std::vector<EdgePixel>& edges, const std::vector<PassPlanes>& passes) {
+  return edges.empty() ? nullptr : std::make_unique<EdgePasses>(edges, samplesOf(passes));
+}
+
+// The picture as the passes saw it, where that was from elsewhere than it was taken: what hides light from rims.
+class SeenPicture {
+ public:
+  //   counts  unseenLayer() will be asked for
+  SeenPicture(const GBuffer& gbuffer, const std::vector<PassPlanes>& passes, bool counts)
+      : gbuffer_(gbuffer),
+        lit_{&gbuffer, &gbuffer, nullptr},
+        taken_(pictureCameraOf(passes[0])),
+        camera_(taken_),
+        samples_(samplesOf(passes)),
+        counts_(counts) {}
+  // In the next pass.
+  const GBuffer& seenBy(const PassPlanes& pass, std::size_t index) {
+    const bool moved = !sameView(pass.planes.camera, taken_);
+    if (!picture_ && (counts_ || (moved && !pass.rims.empty()))) {
+      planes_.emplace(gbuffer_, taken_);
+      picture_.emplace(lit_, &*planes_, nullptr, nullptr, camera_, gbuffer_.data);
+      if (counts_) picture_->countUnseen();
+    }
+    camera_ = pass.planes.camera;
+    if (picture_) picture_->moveTo(samples_[index], static_cast<int>(index));
+    return moved && picture_ ? *picture_->picture().gbuffer : gbuffer_;
+  }
+  // 0 everywhere over a deep picture, whose samples stay where they are.
+  ExtraLayer layer() const {
+    return unseenLayer(picture_ ? picture_->unseenShare()
+                                : Image<float>(gbuffer_.data.width(), gbuffer_.data.height(), 0.0f));
+  }
+
+ private:
+  const GBuffer& gbuffer_;
+  LitPicture lit_;
+  Camera taken_, camera_;
+  std::vector<glm::dvec2> samples_;
+  bool counts_;
+  std::optional<DepthPlanes> planes_;
+  std::optional<PassPicture> picture_;
+};
 
 ResolveSettings settingsOf(const PlanesRequest& request, const OitPlanes& planes) {
   ResolveSettings settings;
@@ -176,31 +240,38 @@ ResolvePass* resolverFor(const PlanesRequest& request, const ResolveSettings& se
 }
 
 // One pass of a flat picture.
+//   gbuffer  as it is lit in the pass
 Veil veilOfPixels(const PlanesRequest& request, PassPlanes& pass, const ResolveSettings& settings,
-                  const GBuffer& gbuffer, ResolvePass* resolver, Journal& journal) {
-  journal.time("occlusion of leaves", [&] { occludeRims(request.rims, pass.rims, gbuffer, pass.planes, journal); });
+                  const GBuffer& gbuffer, const GBuffer& occluding, ResolvePass* resolver, Journal& journal) {
+  journal.time("occlusion of leaves", [&] { occludeRims(request.rims, pass.rims, occluding, pass.planes, journal); });
   return journal.time("resolve",
                       [&] { return resolveSums(resolver, std::move(pass.planes), settings, request.lookup, gbuffer); });
 }
 
 // Reads the picture that the planes belong to, and checks that they do.
+// Puts a picture's colours as shadows have left them into it; nothing where there are none.
+void lightBy(const Image<glm::vec4>& colours, GBuffer& gbuffer) {
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    gbuffer.beauty[i] = glm::vec4(glm::vec3(colours[i]), gbuffer.beauty[i].a);
+}
+
 GBuffer readBackground(const PlanesRequest& request, const PassPlanes& first, ResolvedPlanes& result,
                        std::unique_ptr<DeepOpaque>& deep, Journal& journal) {
   const OitPlanes& planes = first.planes;
+  const Camera& camera = pictureCameraOf(first);
   result.opaque =
-      journal.time("read picture", [&] { return readPictureFile(request.opaque, request.read, &planes.camera, deep); });
+      journal.time("read picture", [&] { return readPictureFile(request.opaque, request.read, &camera, deep); });
   expectSpaceOf(result.opaque.space, request.opaque, planes, request.planes[0]);
   result.opaque.space = planes.info.space;
-  result.camera = planes.camera;
+  result.camera = camera;
   result.info = planes.info;
   if (!deep) journal.note(understoodLines(result.opaque));
   journal.note(result.opaque.notes);
   checkPlaces(request, planes, deep.get());
-  checkPlanes(request, planes, result.opaque.gbuffer);
+  checkPlanes(request, first, result.opaque.gbuffer);
   if (deep) checkRims(request.rims, false);
   GBuffer gbuffer = result.opaque.gbuffer;
-  for (std::size_t i = 0; i < first.relit.size(); ++i)
-    gbuffer.beauty[i] = glm::vec4(glm::vec3(first.relit[i]), gbuffer.beauty[i].a);
+  lightBy(first.relit, gbuffer);
   return gbuffer;
 }
 
@@ -222,24 +293,35 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   if (wantsPlanes(request.layers)) ofPlanes.push_back(planeLayer(request.layers, passes[0].planes));
   const std::vector<EdgePixel> pixels = journal.time("edges", [&] { return edgesOf(passes, result.opaque.gbuffer); });
   const std::unique_ptr<EdgePasses> edges = dealt(pixels, passes);
+  const bool wantsUnseen = asks(request.layers, LayerName::unseen);
+  SeenPicture picture(gbuffer, passes, wantsUnseen && !deep);
   VeilMean mean;
-  for (PassPlanes& pass : passes) {
+  MovingLight moving;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    PassPlanes& pass = passes[i];
+    std::optional<GBuffer> lit;  // where the pass has light of its own
+    if (!pass.now.empty()) lightBy(pass.now, lit.emplace(gbuffer));
+    const GBuffer& background = lit ? *lit : gbuffer;
     Veil veil =
-        deep ? journal.time(
-                   "resolve",
-                   [&] { return resolvePlaces(pass.planes, pass.scatter, settings, request.lookup, *deep, gbuffer); })
-             : veilOfPixels(request, pass, settings, gbuffer, resolver, journal);
-    if (edges) edges->weigh(static_cast<int>(&pass - passes.data()), veil);
+        deep
+            ? journal.time(
+                  "resolve",
+                  [&] { return resolvePlaces(pass.planes, pass.scatter, settings, request.lookup, *deep, background); })
+            : veilOfPixels(request, pass, settings, background, picture.seenBy(pass, i), resolver, journal);
+    if (edges) edges->weigh(static_cast<int>(i), veil);
+    moving.add(veil, lit ? &lit->beauty : nullptr, gbuffer.beauty);
     mean.add(std::move(veil));
   }
   result.veil = journal.time("average", [&] { return mean.finish(); });
   if (edges) edges->finish(result.veil);
+  moving.finish(result.veil);
   result.picture = journal.time("compose", [&] { return compose(result.veil, gbuffer); });
   noteWhatIsNotFinite(result.picture, gbuffer, journal);
   for (std::size_t i = 0; i < relit.size(); ++i)
     if (relit[i].a > 0.0f) result.picture.touched[i] = 1;
   result.layers = veilLayers(request.layers, result.veil);
   result.layers.insert(result.layers.end(), ofPlanes.begin(), ofPlanes.end());
+  if (wantsUnseen) result.layers.push_back(picture.layer());
   if (asks(request.layers, LayerName::edges)) result.layers.push_back(edgesLayer(result.opaque.gbuffer, &pixels));
   result.device = device.description();
   return result;

@@ -111,28 +111,45 @@ void readMemory(const ShotRequest& request, Shot& shot) {
   if (shot.hasCamera) shot.camera = chooseCamera(request.camera, shot.opaque.gbuffer, shot.scene, kMemoryPicture);
 }
 
+// Whether both are one in every number.
+bool sameNumbers(const Camera& a, const Camera& b) {
+  return a.viewFromWorld == b.viewFromWorld && a.orthographic == b.orthographic && a.focal == b.focal &&
+         a.centre == b.centre && a.rangeNear == b.rangeNear && a.rangeFar == b.rangeFar;
+}
+
+// Deep samples lie in the picture's own pixels: they need no camera, but fog does.
+void takeCamera(const ShotRequest& request, const OpaqueFile& picture, Shot& shot) {
+  shot.hasCamera = shot.hasScene || picture.gbuffer.camera || isChosen(request.camera);
+  if (shot.hasCamera)
+    shot.camera = chooseCamera(request.camera, picture.gbuffer, shot.scene, request.opaque, picture.cameraRefusal);
+}
+
 // The camera is chosen before depth is converted, which may take it.
 void readPicture(const ShotRequest& request, ExrDocument document, Shot& shot) {
   ReadOptions framing = request.read;
   framing.framingAlone = true;
   OpaqueFile first = interpretPicture(std::move(document), framing, nullptr, shot.deepOpaque);
-  // Deep samples lie in the picture's own pixels: they need no camera, but fog does.
-  shot.hasCamera = shot.hasScene || first.gbuffer.camera || isChosen(request.camera);
-  if (shot.hasCamera)
-    shot.camera = chooseCamera(request.camera, first.gbuffer, shot.scene, request.opaque, first.cameraRefusal);
+  takeCamera(request, first, shot);
   shot.opaque = interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr,
                                  shot.deepOpaque);
 }
 
-// What the scene is loaded with, at the moment of the picture.
-SceneOptions sceneOptionsOf(const ShotRequest& request, const std::optional<ShotMoment>& moment) {
-  SceneOptions options = request.scene;
+// The picture of the frame before, unless the camera that may have converted its depth has moved.
+void keepPicture(const ShotRequest& request, Shot& shot) {
+  const Camera before = shot.camera;
+  const bool hadCamera = shot.hasCamera;
+  takeCamera(request, shot.opaque, shot);
+  shot.keptPicture = hadCamera == shot.hasCamera && (!hadCamera || sameNumbers(before, shot.camera));
+  if (!shot.keptPicture) readPicture(request, std::move(shot.opaque.document), shot);
+}
+
+// The scene is loaded at the moment of the picture.
+void takeMoment(const ShotRequest& request, const std::optional<ShotMoment>& moment, SceneOptions& options) {
   const ShotTime& time = request.time;
-  options.animations = time.animations;
   if (moment) {
     options.seconds = moment->seconds;
     options.secondsBy = moment->origin;
-    return options;
+    return;
   }
   const bool asked = time.framesPerSecond || time.offset || (!time.animations.empty() && !time.none());
   if (asked)
@@ -145,7 +162,6 @@ SceneOptions sceneOptionsOf(const ShotRequest& request, const std::optional<Shot
                                          : "--animation"));
   options.secondsBy =
       time.none() ? "--animation none" : "the picture's header names no frame; --frame N or --time SECONDS plays them";
-  return options;
 }
 
 // What was understood of the picture.
@@ -157,12 +173,16 @@ std::vector<std::string> linesOf(const Shot& shot) {
   return lines;
 }
 
-void chooseSurroundings(const ShotRequest& request, Shot& shot, Journal& journal) {
+//   keeps  the picture of the frame before may be taken
+void chooseSurroundings(const ShotRequest& request, bool keeps, Shot& shot, Journal& journal) {
+  if (!keeps) shot.environment.reset();
+  shot.surroundings = glm::vec3(0.0f);
   if (const auto* colour = std::get_if<glm::vec3>(&request.surroundings)) {
     shot.surroundings = *colour;
     return;
   }
   if (const auto* picture = std::get_if<PictureOfSurroundings>(&request.surroundings)) {
+    if (keeps && shot.environment) return;
     std::vector<std::string> notes;
     shot.environment = journal.time("prepare environment", [&] {
       const Environment environment = readEnvironment(picture->path, notes, shot.opaque.space.fromRec709);
@@ -239,41 +259,102 @@ glm::vec3 medianSky(const GBuffer& gbuffer, std::size_t& pixels) {
   return median;
 }
 
-std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal& journal) {
-  auto shot = std::make_unique<Shot>();
+namespace {
+
+// What of an earlier frame's shot may serve again; a shot that has read nothing where none may.
+std::unique_ptr<Shot> shotToFill(const ShotRequest& request, std::unique_ptr<Shot> earlier) {
+  if (!earlier || request.memory || earlier->lender) return std::make_unique<Shot>();
+  earlier->keptPicture = earlier->keptScene = false;
+  earlier->deep.clear();
+  earlier->geometry.clear();
+  if (earlier->deepOpaque) earlier->opaque = OpaqueFile();
+  earlier->deepOpaque.reset();
+  return earlier;
+}
+
+void loadFiles(const SceneOptions& options, Shot& shot, Journal& journal) {
+  shot.keptScene = false;
+  shot.files.reset();
+  shot.scene = Scene();
+  journal.time("read scene", [&] { shot.files = std::make_unique<SceneFiles>(shot.geometry, options, shot.scene); });
+}
+
+// Poses the scene of the frame before.
+void keepScene(const SceneOptions& options, Shot& shot, Journal& journal) {
+  shot.keptScene = true;
+  if (!shot.files->moves() || !options.seconds) return;
+  journal.time("read scene", [&] {
+    const std::vector<int> read = shot.files->pose(*options.seconds, options.secondsBy);
+    bringInto(shot.scene, shot.origin.fromRec709, &read);
+  });
+}
+
+void readDeep(const ShotRequest& request, const std::vector<std::string>& paths, Shot& shot) {
+  const GBuffer& gbuffer = shot.opaque.gbuffer;
+  const Camera* camera = shot.hasCamera ? &shot.camera : nullptr;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    shot.deep.push_back(std::make_unique<DeepSource>(paths[i],
+                                                     deepDepth(request.read, camera, gbuffer.display, paths[i]),
+                                                     gbuffer, static_cast<std::uint32_t>(i), request.read.view));
+    shot.deep.back()->bringInto(shot.opaque.space);
+  }
+}
+
+// The scene's colours, in the picture's space.
+void bringScene(const SceneOptions& options, ShotOrigin& origin, Shot& shot, Journal& journal) {
+  const glm::dmat3& space = shot.opaque.space.fromRec709;
+  if (shot.keptScene && shot.origin.fromRec709 != space) loadFiles(options, shot, journal);
+  if (!shot.keptScene)
+    origin.outside = journal.time("read scene", [&] { return bringInto(shot.scene, space); });
+  else
+    origin.outside = shot.origin.outside;
+  origin.fromRec709 = space;
+  journal.note(origin.outside);
+}
+
+}  // namespace
+
+std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal& journal,
+                               std::unique_ptr<Shot> earlier) {
+  std::unique_ptr<Shot> shot = shotToFill(request, std::move(earlier));
   std::vector<std::string> deep;
   for (const std::string& path : request.inputs) (isExrName(path) ? deep : shot->geometry).push_back(path);
   shot->hasScene = !shot->geometry.empty();
   const WorkingSpace colours(request.colour, request.scene.assetRoot);
-  ExrDocument document;
-  if (!request.memory)
-    document = journal.time("read picture", [&] { return readWithSides(request.opaque, request.read); });
-  shot->moment = momentOf(request.time, headerTimeOf(document));
-  SceneOptions options = sceneOptionsOf(request, shot->moment);
+  SceneOptions options = request.scene;
+  options.animations = request.time.animations;
   if (traced) options.streamBytes = 0;
-  journal.time("read scene", [&] { shot->files = std::make_unique<SceneFiles>(shot->geometry, options, shot->scene); });
+  ShotOrigin origin = originOf(request, shot->geometry, options);
+  const bool keepsPicture = !shot->opaque.document.parts.empty() && origin.samePicture(shot->origin);
+  ExrDocument document;
+  if (!request.memory && !keepsPicture) {
+    shot->opaque = OpaqueFile();  // before the next one takes as much memory
+    document = journal.time("read picture", [&] { return readWithSides(request.opaque, request.read); });
+  }
+  if (!keepsPicture) shot->headerTime = headerTimeOf(document);
+  shot->moment = momentOf(request.time, shot->headerTime);
+  takeMoment(request, shot->moment, options);
+  const bool posed = options.seconds.has_value();
+  if (shot->files && origin.sameScene(shot->origin) && posed == shot->origin.posed)
+    keepScene(options, *shot, journal);
+  else
+    loadFiles(options, *shot, journal);
+  origin.posed = posed;
   journal.note(shot->scene.notes);
   journal.time("read picture", [&] {
-    request.memory ? readMemory(request, *shot) : readPicture(request, std::move(document), *shot);
+    request.memory ? readMemory(request, *shot)
+    : keepsPicture ? keepPicture(request, *shot)
+                   : readPicture(request, std::move(document), *shot);
     // A camera of the glTF's own may be animated.
     shot->sceneCamera = shot->hasCamera && (std::holds_alternative<NamedCamera>(request.camera) ||
                                             (!isChosen(request.camera) && !shot->opaque.gbuffer.camera));
   });
   OpaqueFile& picture = shot->opaque;
-  picture.space = colours.of(picture.space, request.opaque, picture.notes);
-  journal.note(journal.time("read scene", [&] { return bringInto(shot->scene, picture.space.fromRec709); }));
+  if (!shot->keptPicture) picture.space = colours.of(picture.space, request.opaque, picture.notes);
+  bringScene(options, origin, *shot, journal);
   journal.note(linesOf(*shot));
   journal.note(picture.notes);
-  journal.time("read deep", [&] {
-    const GBuffer& gbuffer = picture.gbuffer;
-    const Camera* camera = shot->hasCamera ? &shot->camera : nullptr;
-    for (std::size_t i = 0; i < deep.size(); ++i) {
-      shot->deep.push_back(std::make_unique<DeepSource>(deep[i],
-                                                        deepDepth(request.read, camera, gbuffer.display, deep[i]),
-                                                        gbuffer, static_cast<std::uint32_t>(i), request.read.view));
-      shot->deep.back()->bringInto(picture.space);
-    }
-  });
+  journal.time("read deep", [&] { readDeep(request, deep, *shot); });
   if (shot->hasScene) {
     std::optional<double> residual;
     if (!shot->deepOpaque) residual = verifyCamera(shot->opaque, shot->camera);
@@ -281,7 +362,9 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
         "camera: {}{}", shot->camera.origin,
         residual ? fmt::format(", checked against positions: median {:.2g} px", *residual) : ", not checked"));
   }
-  chooseSurroundings(request, *shot, journal);
+  const bool sameSurroundings = origin.sameSurroundings(shot->origin);
+  shot->origin = std::move(origin);
+  chooseSurroundings(request, sameSurroundings, *shot, journal);
   return shot;
 }
 

@@ -9,6 +9,7 @@
 #include "composite/deep/deep_source.h"
 #include "composite/pipeline/journal.h"
 #include "composite/pipeline/request.h"
+#include "composite/pipeline/shot_origin.h"
 #include "engine_bridge/scene/surroundings.h"
 
 namespace pellucid {
@@ -16,6 +17,10 @@ namespace pellucid {
 // Nothing of it changes once it is loaded, but for its pose where a glTF of it is animated; deep files keep their place
 // in themselves as they are read.
 struct Shot {
+  ShotOrigin origin;         // which files, and how they were read
+  bool keptPicture = false;  // as the frame before left it: files, settings and camera are the same
+  bool keptScene = false;    // but for its pose
+
   Shot() = default;
   ~Shot();  // gives back what it borrowed
   Shot(const Shot&) = delete;
@@ -23,6 +28,7 @@ struct Shot {
 
   std::shared_ptr<MemoryPicture> lender;  // of the picture's colours and depths; null for those of a file
   OpaqueFile opaque;
+  HeaderTime headerTime;             // what the picture's header says of it
   std::optional<ShotMoment> moment;  // when it was taken; nothing where nobody says
   Scene scene;
   std::unique_ptr<SceneFiles> files;  // what poses the scene; its moves() says whether anything does
@@ -39,8 +45,10 @@ struct Shot {
 
 // Reads every file once and decides on camera and surroundings, noting what was inferred. Throws what the readers
 // throw, and MeaningError when there is no camera, or more than one and none was named.
-//   traced  rays will meet the scene's triangles: they are decoded, whatever SceneOptions::streamBytes says
-std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal& journal);
+//   traced   rays will meet the scene's triangles: they are decoded, whatever SceneOptions::streamBytes says
+//   earlier  of another frame, or null: what is the same is taken over, at the same place
+std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal& journal,
+                               std::unique_ptr<Shot> earlier = nullptr);
 
 // The opaque picture of a file, flat or deep.
 //   camera  where depth needs one, or null: the file's own

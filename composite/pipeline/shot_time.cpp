@@ -43,8 +43,7 @@ std::optional<ShotMoment> momentOf(const ShotTime& time, const HeaderTime& heade
 }
 
 void checkShutter(const Shutter& shutter) {
-  constexpr double kMostFrames = 1e4;
-  if (!(std::abs(shutter.open) <= kMostFrames && std::abs(shutter.close) <= kMostFrames &&
+  if (!(std::abs(shutter.open) <= kLongestShutter && std::abs(shutter.close) <= kLongestShutter &&
         shutter.open <= shutter.close))
     throw UsageError(
         fmt::format("--shutter: found {:g}:{:g}, expected OPEN:CLOSE in frames from -1e4 to 1e4, the first "

@@ -73,7 +73,10 @@ struct SceneFiles::File {
       notes.add(fmt::format("animations are not played, and nodes stand where the file puts them{}",
                             options.secondsBy.empty() ? "" : ": " + options.secondsBy));
     else if (animations->any())
-      notes.add(fmt::format("plays {} at {}", animations->description(), options.secondsBy));
+      notes.add(playing(options.secondsBy));
+  }
+  std::string playing(const std::string& secondsBy) const {
+    return fmt::format("plays {} at {}", animations->description(), secondsBy);
   }
   void read(const std::optional<double>& seconds) {
     try {
@@ -144,6 +147,17 @@ std::vector<int> SceneFiles::pose(double seconds) {
   }
   applyOverrides(options_.overrides, scene_.materials);
   return read;
+}
+
+std::vector<int> SceneFiles::pose(double seconds, const std::string& secondsBy) {
+  for (const auto& file : files_) {
+    if (!file->animations->any()) continue;
+    const std::string before = printable(file->file.path() + ": " + file->playing(options_.secondsBy));
+    const auto note = std::find(scene_.notes.begin(), scene_.notes.end(), before);
+    if (note != scene_.notes.end()) *note = printable(file->file.path() + ": " + file->playing(secondsBy));
+  }
+  options_.secondsBy = secondsBy;
+  return pose(seconds);
 }
 
 Scene loadScene(const std::vector<std::string>& paths, const SceneOptions& options) {

@@ -21,6 +21,7 @@ struct SceneOptions {
   std::optional<double> seconds;
   std::string secondsBy;                // what says so, for a message: "41.75 s, frame 1002 (--frame)"
   std::vector<std::string> animations;  // names, or "all"; empty: see Animations in animations.h
+  bool operator==(const SceneOptions&) const = default;
 };
 
 // Appends the files' contents in the order given. Throws InputError (missing file, missing texture, damaged buffer),
@@ -44,6 +45,9 @@ class SceneFiles {
   // is read again, and waits for bringInto(). Throws what loadScene() throws.
   // Returns the primitives that it has read again.
   std::vector<int> pose(double seconds);
+  // The same for another picture: the notes of the scene say so.
+  //   secondsBy  as SceneOptions has it
+  std::vector<int> pose(double seconds, const std::string& secondsBy);
 
  private:
   struct File;

@@ -12,6 +12,7 @@
 #include "gbuffer/errors.h"
 #include "gbuffer/moved_depth.h"
 #include "gbuffer/opaque_io.h"
+#include "tests/pipeline/box_edge.h"
 #include "tests/pipeline/shot_files.h"
 #include "tests/support/program.h"
 
@@ -134,36 +135,6 @@ Moments momentsOf(const Image<glm::vec4>& picture) {
   return m;
 }
 
-// A pixel of an edge whose middle lies at `centre` and that a box of this width blurs; the pixel's own box lies over
-// it.
-double edgePixel(int x, double centre, double width) {
-  // What clamp(y, 0, 1) adds up to.
-  const auto sum = [](double y) { return y < 0 ? 0.0 : y < 1 ? 0.5 * y * y : y - 0.5; };
-  const double middle = x + 1.0 - centre;
-  return (sum(middle + 0.5 * width) - sum(middle - 0.5 * width)) / width;
-}
-
-// The width of the box that blurs an edge along y: the one whose pixels are as far from 0 and 1, all together.
-double boxWidth(const Image<glm::vec4>& picture) {
-  double lit = 0, undecided = 0;
-  for (std::size_t i = 0; i < picture.size(); ++i) {
-    const auto value = static_cast<double>(picture[i].r);
-    lit += value / picture.height();
-    undecided += value * (1.0 - value) / picture.height();
-  }
-  double low = 1e-6, high = kSize;
-  for (int step = 0; step < 60; ++step) {
-    const double width = 0.5 * (low + high);
-    double sum = 0;
-    for (int x = 0; x < kSize; ++x) {
-      const double value = edgePixel(x, kSize - lit, width);
-      sum += value * (1.0 - value);
-    }
-    (sum < undecided ? low : high) = width;
-  }
-  return 0.5 * (low + high);
-}
-
 // With so many passes that the steps of a pixel's edge, one for each of them, are below what is asked for.
 constexpr int kManyPasses = 4096;
 
@@ -177,7 +148,7 @@ TEST_F(Blur, ACrossingPaneHasABoxBlurredEdge) {
     Request blurred = request(kManyPasses);
     blurred.shutter = Shutter{open, close, false};
     const Image<glm::vec4> picture = run(blurred);
-    EXPECT_NEAR(boxWidth(picture), 10.0 * (close - open), 0.01) << open << ":" << close;
+    EXPECT_NEAR(boxWidth(picture, boxEdgePixel), 10.0 * (close - open), 0.01) << open << ":" << close;
     // Where the edge lies in the middle of the shutter.
     double lit = 0;
     for (std::size_t i = 0; i < picture.size(); ++i) lit += static_cast<double>(picture[i].r) / picture.height();
@@ -193,9 +164,9 @@ TEST_F(Blur, TheCameraBlursAsMuchTheOtherWay) {
   writePicture(kNothing, 2);
   Request blurred = request(kManyPasses);
   blurred.shutter = Shutter{-0.5, 0.5, false};
-  EXPECT_NEAR(boxWidth(run(blurred)), 10.0, 0.01);
+  EXPECT_NEAR(boxWidth(run(blurred), boxEdgePixel), 10.0, 0.01);
   blurred.shutter->holdsCamera = true;
-  EXPECT_NEAR(boxWidth(run(blurred)), 0.0, 0.1) << "held";
+  EXPECT_NEAR(boxWidth(run(blurred), boxEdgePixel), 0.0, 0.1) << "held";
 }
 
 TEST_F(Blur, ErrorFallsWithThePasses) {
@@ -210,7 +181,7 @@ TEST_F(Blur, ErrorFallsWithThePasses) {
     const Image<glm::vec4> picture = run(blurred);
     double worst = 0;
     for (int x = 0; x < kSize; ++x) {
-      worst = std::max(worst, std::abs(static_cast<double>(picture.at(x, 5).r) - edgePixel(x, kSize / 2, 10.0)));
+      worst = std::max(worst, std::abs(static_cast<double>(picture.at(x, 5).r) - boxEdgePixel(x, kSize / 2, 10.0)));
     }
     EXPECT_LT(worst, 0.6 * last) << passes;
     last = worst;

@@ -76,6 +76,14 @@ const Feature kFeatures[] = {
      }},
     {"a normalisation", [](Request& r) { r.sums.normalisation = shading::PLD_NORMALISE_PUBLISHED; }},
     {"self-modulation", [](Request& r) { r.sums.selfModulation = true; }},
+    {"a shutter", openShutter},
+    {"a lens", openLens},
+    {"a shutter, a lens and shadows",
+     [](Request& r) {
+       openShutter(r);
+       openLens(r);
+       r.shadows.source = ShadowSource::rays;
+     }},
     {"a pixel filter",
      [](Request& r) {
        r.passes = 2;
@@ -185,16 +193,19 @@ TEST_F(Product, TheReadmeListsEveryRefusal) {
 // What is read changes something, or is refused: nothing that was given is passed over.
 TEST_F(Product, WhatIsGivenIsReadOrRefused) {
   Request base = requestOf(files.flat, files.scene);
+  base.shot.time.frame = 12;
   Compositor compositor(base);
   for (const char* method : kMethods)
     for (const Feature& feature : kFeatures) {
       const std::string name = feature.name;
-      if (name != "a weight" && name != "a normalisation" && name != "self-modulation") continue;
+      const bool blurs = name == "a shutter" || name == "a lens";
+      if (!blurs && name != "a weight" && name != "a normalisation" && name != "self-modulation") continue;
       Request request = base;
       request.method = method;
       request.paint = paintOf(method);
-      const Request without = request;
+      Request without = request;
       feature.ask(request);
+      without.passes = request.passes;
       SCOPED_TRACE(name + ", " + method);
       if (refusedBy(request)) continue;
       const Result given = compositor.run(request), plain = compositor.run(without);

@@ -1,5 +1,7 @@
 #include "tests/pipeline/shot_files.h"
 
+#include <algorithm>
+
 #include "composite/deep/sample_channels.h"
 #include "gbuffer/deep_io.h"
 #include "tests/support/exr_shots.h"
@@ -48,6 +50,8 @@ void writeScene(const std::string& path) {
   options.nodes = json::array({{{"name", "sun"},
                                 {"rotation", {-0.38268343, 0.0, 0.0, 0.92387953}},
                                 {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}});
+  // A card of smoke and a glass; without a time both stand where they are.
+  options.motions = {{0, {6.0f, 0.0f, 0.0f}}, {3, {-3.0f, 1.5f, 0.0f}}};
   writeGlb(path, quads, options);
 }
 
@@ -126,6 +130,18 @@ Request requestOf(const std::string& opaque, const std::string& scene) {
   request.method = "phenomenological";
   request.paint = PaintSums{};
   return request;
+}
+
+void openShutter(Request& request) {
+  request.passes = std::max(request.passes, 2);
+  request.shot.time.frame = 12;
+  request.shutter = Shutter{-0.5, 0.5, false};
+}
+
+void openLens(Request& request) {
+  request.passes = std::max(request.passes, 2);
+  request.lens.radius = 0.2;
+  request.lens.focus = 9.0;
 }
 
 Paint paintOf(const std::string& method) {

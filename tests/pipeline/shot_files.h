@@ -19,6 +19,10 @@ ShotFiles writeShotFiles(const std::string& folder);
 // Composites `scene` over `opaque` by the sums, at pixel centres; nothing is inferred from the sky.
 Request requestOf(const std::string& opaque, const std::string& scene);
 
+// Motion blur of what the scene moves, and depth of field, by two passes.
+void openShutter(Request& request);
+void openLens(Request& request);
+
 // What --method takes, without the settings of samples.
 Paint paintOf(const std::string& method);
 

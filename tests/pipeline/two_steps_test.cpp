@@ -80,6 +80,8 @@ const Way kWays[] = {
        r.shot.scene.overrides = {"smoke.lowResolution=true"};
        r.lowResolution.factor = 4;
      }},
+    {"a shutter", openShutter},
+    {"a lens", openLens},
     {"fitted weight", [](Request& r) { r.sums.fitWeight = true; }},
     {"deep layers", [](Request&) {}},  // the files are the test's
 };

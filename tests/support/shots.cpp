@@ -15,6 +15,34 @@ json unlit(float r, float g, float b, float alpha) {
           {"extensions", {{"KHR_materials_unlit", json::object()}}}};
 }
 
+namespace {
+
+// Appends the animation's numbers to the binary chunk, and everything that names them to the document.
+void addMotions(const std::vector<Motion>& motions, json& root, std::string& bin) {
+  if (motions.empty()) return;
+  constexpr float kSeconds = 10.0f;
+  const auto accessor = [&](const std::vector<float>& values, const char* type, std::size_t count) {
+    root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", values.size() * 4}});
+    bin.append(reinterpret_cast<const char*>(values.data()), values.size() * 4);
+    root["accessors"].push_back(
+        {{"bufferView", root["bufferViews"].size() - 1}, {"componentType", 5126}, {"count", count}, {"type", type}});
+    return root["accessors"].size() - 1;
+  };
+  json animation{{"name", "moves"}};
+  const std::size_t times = accessor({0.0f, kSeconds}, "SCALAR", 2);
+  for (const Motion& motion : motions) {
+    const auto& v = motion.perSecond;
+    const std::size_t places =
+        accessor({0.0f, 0.0f, 0.0f, kSeconds * v[0], kSeconds * v[1], kSeconds * v[2]}, "VEC3", 2);
+    animation["samplers"].push_back({{"input", times}, {"output", places}});
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", motion.node}, {"path", "translation"}}}});
+  }
+  root["animations"] = {animation};
+}
+
+}  // namespace
+
 void writeGlb(const std::string& path, const std::vector<Quad>& quads, const GlbOptions& options) {
   std::string bin;
   const auto put = [&](const void* data, std::size_t bytes) {
@@ -76,6 +104,7 @@ void writeGlb(const std::string& path, const std::vector<Quad>& quads, const Glb
   root["scenes"] = {{{"nodes", scene}}};
   root["extensionsUsed"] = {"KHR_materials_unlit"};
   while (bin.size() % 4) bin.push_back('\0');
+  addMotions(options.motions, root, bin);
   if (!bin.empty()) root["buffers"] = {{{"byteLength", bin.size()}}};
   root.merge_patch(options.extra);
   std::string text = root.dump();
