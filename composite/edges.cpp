@@ -341,8 +341,6 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
   if (!mixture) return std::nullopt;
   const std::optional<DepthPlane> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
   if (!own || !beside) return std::nullopt;
-  // In a hollow, as where a steep floor meets a wall, either plane goes on behind the other: no edge hides anything.
-  if (other == Side::nearer && beside->centre > own->centre && std::isfinite(own->centre)) return std::nullopt;
   if (std::isinf((other == Side::nearer ? own : beside)->centre)) readAlpha(colour.a, *mixture);
   EdgePixel edge;
   edge.x = x;

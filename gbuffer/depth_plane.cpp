@@ -125,15 +125,12 @@ Line lineThrough(const Image<double>& linear, int x, int y, int dx, int dy, doub
   return line;
 }
 
-constexpr int kNeighbours[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-
 }  // namespace
 
 DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
     : gbuffer_(gbuffer),
       orthographic_(camera.orthographic),
-      slopes_(gbuffer.viewZ.width(), gbuffer.viewZ.height(), glm::vec2(0.0f)),
-      hollows_(gbuffer.viewZ.width(), gbuffer.viewZ.height(), 0) {
+      slopes_(gbuffer.viewZ.width(), gbuffer.viewZ.height(), glm::vec2(0.0f)) {
   const Image<double> linear = linearOf(gbuffer.viewZ, orthographic_);
   const NormalSlopes normals(gbuffer, camera);
   // A second difference holds four values, each rounded by half of the precision at most.
@@ -143,7 +140,6 @@ DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
       if (std::isnan(linear.at(x, y))) continue;
       for (const int axis : {0, 1}) {
         const Line line = lineThrough(linear, x, y, 1 - axis, axis, rounding);
-        if (!line.straight(0)) hollows_.at(x, y) = 1;
         std::optional<double> slope = straightSlope(line);
         if (!slope) slope = curvedSlope(line);
         if (!slope)
@@ -153,35 +149,6 @@ DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
       }
     }
   });
-  tbb::parallel_for(0, linear.height(), [&](int y) {
-    for (int x = 0; x < linear.width(); ++x)
-      if (hollows_.at(x, y)) markHollow(x, y);
-  });
-}
-
-// Each of the two planes lies behind the other's pixel.
-void DepthPlanes::markHollow(int x, int y) {
-  const Image<float>& viewZ = gbuffer_.viewZ;
-  const double farther = 1.0 + static_cast<double>(gbuffer_.depthPrecision);
-  std::uint8_t marks = 0;
-  for (int k = 0; k < 8; ++k) {
-    const int dx = kNeighbours[k][0], dy = kNeighbours[k][1], u = x + dx, v = y + dy;
-    if (u < 0 || v < 0 || u >= viewZ.width() || v >= viewZ.height() || !std::isfinite(viewZ.at(u, v))) continue;
-    const auto here = static_cast<double>(viewZ.at(x, y)), there = static_cast<double>(viewZ.at(u, v));
-    if (at(x, y).z(dx, dy) > there * farther && at(u, v).z(-dx, -dy) > here * farther)
-      marks |= static_cast<std::uint8_t>(1 << k);
-  }
-  hollows_.at(x, y) = marks;
-}
-
-double DepthPlanes::depthIn(int x, int y, glm::dvec2 offset) const {
-  double z = at(x, y).z(offset.x, offset.y);
-  for (int k = 0; k < 8 && hollows_.at(x, y); ++k)
-    if (hollows_.at(x, y) >> k & 1) {
-      const int dx = kNeighbours[k][0], dy = kNeighbours[k][1];
-      z = std::min(z, at(x + dx, y + dy).z(offset.x - dx, offset.y - dy));
-    }
-  return z;
 }
 
 DepthPlane DepthPlanes::at(int x, int y) const {
@@ -198,7 +165,7 @@ void DepthPlanes::depthAt(glm::dvec2 sample, const Window& part, Image<float>& v
   tbb::parallel_for(part.y0, part.y1, [&](int y) {
     for (int x = part.x0; x < part.x1; ++x) {
       const float z = gbuffer_.viewZ.at(x, y);
-      viewZ.at(x, y) = std::isfinite(z) ? static_cast<float>(depthIn(x, y, offset)) : z;
+      viewZ.at(x, y) = std::isfinite(z) ? static_cast<float>(at(x, y).z(offset.x, offset.y)) : z;
     }
   });
 }

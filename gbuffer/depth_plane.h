@@ -1,6 +1,5 @@
 // The opaque depth of a pixel and how it changes across it: what a sample elsewhere in the pixel meets.
 #pragma once
-#include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
 
@@ -23,8 +22,7 @@ struct DepthPlane {
 
 // The planes of all pixels of a picture. Neighbours tell the slope: those that lie on one surface with the pixel, which
 // are the ones that continue each other. Where none do, as on a thing one pixel wide, the file's normal tells it; where
-// there is none either, the depth is that of the centre all over the pixel. In a hollow, as between floor and wall, a
-// pixel's plane ends where that of a neighbour comes before it.
+// there is none either, the depth is that of the centre all over the pixel.
 class DepthPlanes {
  public:
   //   gbuffer  must outlive this; its depth is what it was when this was made
@@ -41,10 +39,7 @@ class DepthPlanes {
  private:
   const GBuffer& gbuffer_;
   bool orthographic_;
-  void markHollow(int x, int y);
-  double depthIn(int x, int y, glm::dvec2 offset) const;
-  Image<glm::vec2> slopes_;      // DepthPlane::across and down
-  Image<std::uint8_t> hollows_;  // by bit: neighbours whose planes and this one end each other
+  Image<glm::vec2> slopes_;  // DepthPlane::across and down
 };
 
 }  // namespace pellucid

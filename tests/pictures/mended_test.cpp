@@ -56,7 +56,7 @@ TEST_F(Mended, LabelsOnSurfacesSeenFarAslant) {
 
 // What a steep floor hides above its edge to a wall is what the wall hides.
 TEST_F(Mended, WhatLiesBehindAWallAboveASteepFloor) {
-  for (std::uint64_t i = 0; i < 12; ++i)
+  for (std::uint64_t i = 0; i < 4; ++i)
     for (const int passes : {5, 16}) {
       SCOPED_TRACE(testing::Message() << i << ", " << passes << " passes");
       Random random(200 + i);
