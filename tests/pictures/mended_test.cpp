@@ -10,6 +10,8 @@
 namespace pellucid::test {
 namespace {
 
+constexpr double kDegrees = 0.017453292519943295;
+
 class Mended : public ::testing::Test {
  protected:
   void SetUp() override { folder_ = freshFolder("pictures-mended"); }
@@ -39,16 +41,16 @@ class Mended : public ::testing::Test {
 
 // Depth of such labels, interpolated across a triangle, is off by more than a float's step.
 TEST_F(Mended, LabelsOnSurfacesSeenFarAslant) {
-  for (std::uint64_t i = 0; i < 6; ++i) {
+  for (std::uint64_t i = 0; i < 8; ++i) {
     SCOPED_TRACE(i);
     Random random(100 + i);
-    SceneMaker maker("decals", random, 5.0);
-    maker.look(32, 24, 0.4);
-    const double tilt = (80.0 + 0.5 * static_cast<double>(i)) * 0.017453292519943295;
-    const Vec3 normal(0.0, std::sin(tilt), std::cos(tilt)), middle = maker.at(0, -0.3, 5.0);
+    SceneMaker maker("decals", random, 10.0);
+    maker.look(26, 22, 0.4);
+    const double tilt = (81.0 + 0.4 * static_cast<double>(i)) * kDegrees;
+    const Vec3 normal(0.0, std::sin(tilt), std::cos(tilt)), middle = maker.at(0, -0.2, 10.0);
     const int floor = maker.plane(middle, normal);
-    maker.placeOn({floor, 0}, quadSheet(2.0, 2.0), middle, facing(normal, 0.3 * static_cast<double>(i)));
-    expectRight(maker, flagsOf(64));
+    maker.placeOn({floor, 0}, quadSheet(8.0, 8.0), middle, facing(normal, 0.3 * static_cast<double>(i)));
+    expectRight(maker, flagsOf(64, "box", 1.5));
   }
 }
 
@@ -60,10 +62,10 @@ TEST_F(Mended, WhatLiesBehindAWallAboveASteepFloor) {
       Random random(200 + i);
       SceneMaker maker("contact", random, 5.0);
       maker.look(24, 24, 0.4);
-      maker.plane(maker.at(0, 0, 5.0), {0.1 * static_cast<double>(i), 0, 1});
-      const double tilt = (84.0 + static_cast<double>(i)) * 0.017453292519943295;
-      maker.plane(maker.at(0, 0.1, 5.0), {0, std::sin(tilt), std::cos(tilt)});
-      pane(maker, 6.5, {0.1, 0.9, 0.2}, 0.75);
+      maker.plane(maker.at(0, 0, 5.0), {0.05 * static_cast<double>(i), 0, 1});
+      const double tilt = (81.0 + 0.5 * static_cast<double>(i)) * kDegrees;
+      maker.plane(maker.at(0, 0.1, 5.0), {0.2, std::sin(tilt), std::cos(tilt)});
+      pane(maker, 6.0, {0.1, 0.9, 0.2}, 0.75);
       expectRight(maker, flagsOf(passes));
     }
 }

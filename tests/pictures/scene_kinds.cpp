@@ -212,10 +212,10 @@ void textured(SceneMaker& maker, Random& random, bool cut) {
   for (int i = 0; i < count; ++i) {
     StoredTexture texture = drawnTexture(random, true);
     const double depth = z * random.between(0.6, 1.5), half = random.between(0.7, 2.0) * widthAt(maker, depth);
-    PlacedMesh& mesh = maker.place(
-        chance(random, 0.5) ? quadSheet(half, half * random.between(0.5, 1.0)) : gridSheet(random, 3, half, 0.1 * half),
-        maker.at(random.between(-0.4, 0.4), random.between(-0.4, 0.4), depth),
-        facing(tilted(random, 50.0), drawnSpin(random)));
+    PlacedMesh& mesh = maker.place(chance(random, 0.5) ? quadSheet(half, half * random.between(0.5, 1.0))
+                                                       : gridSheet(random, 3, half, 0.03 * half),
+                                   maker.at(random.between(-0.4, 0.4), random.between(-0.4, 0.4), depth),
+                                   facing(tilted(random, 50.0), drawnSpin(random)));
     reference::Coat& coat = mesh.coat;
     // 6 to 30 pixels a texel, so that the finest level is read throughout; even where tilted.
     const double pixels = maker.scene().numbers.eye.displayWidth * half / widthAt(maker, depth);

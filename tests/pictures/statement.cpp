@@ -57,9 +57,12 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
       centres_.at(x, y) =
           reference::nearestSolid(picture.scene(), reference::rayThrough(picture.scene().eye, x + 0.5, y + 0.5));
   // The square that a pass stands for is what the density of all of them at the filter's middle leaves to each.
-  for (const reference::Mesh& mesh : picture.scene().meshes)
-    if (mesh.coat.covering == reference::Covering::mask && flags.softMask)
-      band_ = std::max(1.0, 2.0 * flags.filter.radius) / std::sqrt(static_cast<double>(flags.passes));
+  const double edge = std::max(1.0, 2.0 * flags.filter.radius) / std::sqrt(static_cast<double>(flags.passes));
+  for (std::size_t m = 0; m < picture.scene().meshes.size(); ++m)
+    if (picture.scene().meshes[m].coat.covering == reference::Covering::mask && flags.softMask)
+      for (const int side : {-1, 1}) bands_.push_back({edge, side, static_cast<int>(m)});
+  if (bands_.size() > 2)
+    for (const int side : {-1, 1}) bands_.push_back({edge, side, -1});
   // A corner comes to the eye through one product of floats: as far as the mesh's origin lies from the eye, and the
   // corner from that origin.
   const reference::Eye& eye = picture.scene().eye;
@@ -192,8 +195,7 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
     for (const double part : margin > kWide ? std::vector<double>{1.0, 0.6, 0.3} : std::vector<double>{1.0})
       for (const Vec2 off : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)})
         take(picture_.columnAt(at.x + part * margin * off.x, at.y + part * margin * off.y));
-    if (band_ > 0.0)
-      for (const int side : {-1, 1}) take(picture_.columnAt(at.x, at.y, {band_, side}));
+    for (const reference::CutBand& band : bands_) take(picture_.columnAt(at.x, at.y, band));
     sum += nominal;
     squares += nominal * nominal;
     low += range.low;

@@ -70,8 +70,8 @@ class Statements {
   const Image<glm::vec4>& beauty_;
   std::vector<glm::dvec2> places_;
   Image<reference::Met> centres_;
-  double rounding_ = 0.0;  // of positions as floats hold them, metres
-  double band_ = 0.0;      // edge of the square that rims of masks are as wide as, pixels; 0: as sharp as a ray
+  double rounding_ = 0.0;                  // of positions as floats hold them, metres
+  std::vector<reference::CutBand> bands_;  // rims of masks; none where they are as sharp as a ray
   double size_;
 };
 

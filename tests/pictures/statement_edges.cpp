@@ -17,6 +17,7 @@ using reference::Vec4;
 constexpr int kReach = 3;              // pixels within which a colour has to be seen by itself
 constexpr double kContrast = 1.0 / 8;  // of two colours, as a part of the brighter
 constexpr double kApart = 1.0 / 128;   // of two faces, as a part of their depth
+constexpr double kWholeAlpha = 1.0 / 64;
 constexpr double kNoShare = 1.0 / 4096;
 constexpr double kRounding = 3e-5;
 
@@ -65,14 +66,17 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
 
   double shares[2] = {0.0, 0.0};
   Range ranges[2];
-  const auto take = [&](double u, double v) {
-    const Column column = picture_.columnAt(u, v);
+  const auto takeColumn = [&](const Column& column) {
     for (int side = 0; side < 2; ++side) {
       const Face& face = side == 0 ? own : other;
       const double z = reference::depthOfPlane(picture_.scene(), face, column.ray).value_or(kNothing);
       const double farther = 1.0 + 3.0 * flags_.depthStep();
       takeCuts(column, face, z, z * farther, side == 0 ? ownColour : otherColour, ranges[side]);
     }
+  };
+  const auto take = [&](double u, double v) {
+    takeColumn(picture_.columnAt(u, v));
+    for (const reference::CutBand& band : bands_) takeColumn(picture_.columnAt(u, v, band));
   };
   samples_.under(x, y, [&](const Sampled& sample, double weight) {
     shares[sample.opaque.face == own ? 0 : 1] += weight;
@@ -90,6 +94,9 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
   const Vec4 brightest = glm::max(glm::max(ranges[0].high, ranges[1].high), glm::max(ownColour, otherColour));
   statement.allowed +=
       part * (ranges[0].high - ranges[0].low) + (1.0 - part) * (ranges[1].high - ranges[1].low) + astray * brightest;
+  // Before nothing alpha is the share, where colours are seen alone.
+  const bool tells = (own.solid < 0 || other.solid < 0) && impurity < kWholeAlpha;
+  if (tells) statement.allowed.a -= (astray - kNoShare) * brightest.a;
   return statement;
 }
 
@@ -115,8 +122,7 @@ Statement Statements::mixedAt(int x, int y) const {
       if (inside(u, v)) meet(centres_.at(u, v));
   // Light and transmission apart: edges are taken apart with a weight for each.
   Range light, passed;
-  const auto take = [&](double u, double v) {
-    const Column column = picture_.columnAt(u, v);
+  const auto takeColumn = [&](const Column& column) {
     for (const Face& face : faces) {
       const double first = face.solid < 0 ? kNothing : nearest, last = face.solid < 0 ? kNothing : farthest;
       eachCut(column, face, first, last, [&](const reference::Shown& shown) {
@@ -124,6 +130,10 @@ Statement Statements::mixedAt(int x, int y) const {
         passed.take(Vec4(shown.transmission, 0.0));
       });
     }
+  };
+  const auto take = [&](double u, double v) {
+    takeColumn(picture_.columnAt(u, v));
+    for (const reference::CutBand& band : bands_) takeColumn(picture_.columnAt(u, v, band));
   };
   samples_.under(x, y, [&](const Sampled& sample, double) { take(sample.x, sample.y); });
   for (const glm::dvec2& place : places_) take(x + place.x, y + place.y);

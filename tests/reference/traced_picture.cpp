@@ -97,10 +97,17 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
           const Vec3 volumes = volumesOf(rayThrough(scene_.eye, u, v), corners);
           return colourOf(scene_, mesh, triangle, volumes / (volumes.x + volumes.y + volumes.z)).a;
         };
+        // From pixel to pixel, in the row or column of the place or beside it.
         const auto change = [&](double dx, double dy) {
-          return std::max(std::abs(alphaAt(x + dx, y + dy) - colour.a), std::abs(alphaAt(x - dx, y - dy) - colour.a));
+          double most = 0.0;
+          for (const double k : {-1.0, 0.0, 1.0}) {
+            const double u = x + k * dy, v = y + k * dx, here = alphaAt(u, v);
+            most = std::max({most, std::abs(alphaAt(u + dx, v + dy) - here), std::abs(alphaAt(u - dx, v - dy) - here)});
+          }
+          return most;
         };
-        const double half = band.side == 0 ? 0.0 : 0.5 * band.edge * (change(1.0, 0.0) + change(0.0, 1.0));
+        const bool banded = band.side != 0 && (band.mesh < 0 || band.mesh == static_cast<int>(m));
+        const double half = banded ? 0.5 * band.edge * (change(1.0, 0.0) + change(0.0, 1.0)) : 0.0;
         covered = colour.a + band.side * half >= mesh.coat.cutoff ? 1.0 : 0.0;
       }
       if (!(covered > 0.0)) continue;

@@ -26,6 +26,7 @@ struct Column {
 struct CutBand {
   double edge = 0.0;  // that part
   int side = 0;
+  int mesh = -1;  // of which alone; -1: of all
 };
 // What layers do to the background.
 struct Shown {
