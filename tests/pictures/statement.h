@@ -59,6 +59,7 @@ class Statements {
   Statement mixedAt(int x, int y) const;
   std::optional<Statement> edgeAt(int x, int y, const Surroundings& around) const;
   bool maybeTakenApart(int x, int y) const;
+  bool liesBehind(int x, int y, const reference::Face& own, const reference::Face& other) const;
   bool tellsColour(int x, int y, const reference::Face& face, double& impurity) const;
   const reference::Face& centre(int x, int y) const { return centres_.at(x, y).face; }
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < centres_.width() && y < centres_.height(); }

@@ -38,13 +38,8 @@ bool Statements::tellsColour(int x, int y, const Face& face, double& impurity) c
   return found;
 }
 
-std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& around) const {
-  if (!flags_.edges || around.faces.size() != 2 || x == 0 || y == 0 || !inside(x + 1, y + 1)) return std::nullopt;
-  const Face own = centre(x, y), other = around.faces[0] == own ? around.faces[1] : around.faces[0];
-  if (!(around.faces[0] == own || around.faces[1] == own)) return std::nullopt;
-  for (int v = y - kReach - 1; v <= y + kReach + 1; ++v)
-    for (int u = x - kReach - 1; u <= x + kReach + 1; ++u)
-      if (inside(u, v) && !(centre(u, v) == own) && !(centre(u, v) == other)) return std::nullopt;
+// Whether one of two flat faces lies clearly behind the other all around a pixel that has both beside it.
+bool Statements::liesBehind(int x, int y, const Face& own, const Face& other) const {
   const auto rayAt = [&](int u, int v) { return reference::rayThrough(picture_.scene().eye, u + 0.5, v + 0.5); };
   bool beside = false;
   double firstFarther = 0.0;
@@ -52,14 +47,25 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
     for (int u = x - 1; u <= x + 1; ++u) {
       const auto one = reference::depthOfPlane(picture_.scene(), own, rayAt(u, v));
       const auto two = reference::depthOfPlane(picture_.scene(), other, rayAt(u, v));
-      if (!one || !two) return std::nullopt;
-      if (std::abs(*one - *two) < kApart * std::min(*one, *two)) return std::nullopt;
-      if (firstFarther * (*two - *one) < 0.0) return std::nullopt;  // they meet there
+      if (!one || !two) return false;
+      if (std::abs(*one - *two) < kApart * std::min(*one, *two)) return false;
+      if (firstFarther * (*two - *one) < 0.0) return false;  // they meet there
       firstFarther = *two > *one ? 1.0 : -1.0;
       beside = beside || centre(u, v) == other;
     }
+  return beside;
+}
+
+std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& around) const {
+  if (!flags_.edges || around.faces.size() != 2 || x == 0 || y == 0 || !inside(x + 1, y + 1)) return std::nullopt;
+  const Face own = centre(x, y), other = around.faces[0] == own ? around.faces[1] : around.faces[0];
+  if (!(around.faces[0] == own || around.faces[1] == own)) return std::nullopt;
+  for (int v = y - kReach - 1; v <= y + kReach + 1; ++v)
+    for (int u = x - kReach - 1; u <= x + kReach + 1; ++u)
+      if (inside(u, v) && !(centre(u, v) == own) && !(centre(u, v) == other)) return std::nullopt;
   double impurity = 0.0;
-  if (!beside || !tellsColour(x, y, own, impurity) || !tellsColour(x, y, other, impurity)) return std::nullopt;
+  if (!liesBehind(x, y, own, other) || !tellsColour(x, y, own, impurity) || !tellsColour(x, y, other, impurity))
+    return std::nullopt;
   const Vec4 ownColour = colourOf(own), otherColour = colourOf(other);
   const double contrast = glm::length(ownColour - otherColour);
   if (contrast < kContrast * std::max(glm::length(ownColour), glm::length(otherColour))) return std::nullopt;
