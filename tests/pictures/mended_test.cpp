@@ -81,9 +81,7 @@ TEST_F(Mended, LimbsOfBallsBeforePanes) {
     const int ball = maker.ball(maker.at(0.05, 0.03, 10.0), radius);
     maker.scene().numbers.solids[static_cast<std::size_t>(ball)].colour = {0.75, 0.5, 1.25};
     pane(maker, 15.0, {0.9, 0.3, 0.0}, 0.75);
-    const DrawnScene scene = maker.finish();
-    const Outcome outcome = compositeAndJudge(scene, flagsOf(32), folder_, kept_);
-    EXPECT_TRUE(outcome.right()) << outcome.refusal << outcome.worst;
+    expectRight(maker, flagsOf(32));
   }
 }
 
@@ -96,8 +94,7 @@ TEST_F(Mended, PostsBeforeNothingUnderWideFilters) {
     maker.look(32, 24, 0.4);
     maker.box(maker.at(0, 0, 5.0), facing({0, 0, 1}, 0.1 + 0.2 * static_cast<double>(i)), {0.8, 8.0, 0.001});
     pane(maker, 8.0, {0.0, 0.6, 0.9}, 0.9);
-    DrawnFlags flags = flagsOf(16, i % 2 == 0 ? "triangle" : "gaussian", 1.359375);
-    expectRight(maker, flags);
+    expectRight(maker, flagsOf(16, i % 2 == 0 ? "triangle" : "gaussian", 1.359375));
   }
 }
 
