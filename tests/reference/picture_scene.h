@@ -1,5 +1,5 @@
-// The numbers of a small picture, as traced_picture.h renders it: closed forms that are opaque, meshes that are transparent.
-// Includes nothing of Pellucid's. World space is right-handed, lengths are metres.
+// The numbers of a small picture, as traced_picture.h renders it: closed forms that are opaque, meshes that are
+// transparent. Includes nothing of Pellucid's. World space is right-handed, lengths are metres.
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
