@@ -9,6 +9,8 @@
 #include <numeric>
 #include <optional>
 
+#include "gbuffer/finite_colour.h"
+
 namespace pellucid {
 namespace {
 
@@ -28,10 +30,6 @@ constexpr double kLeastOwn = 0.25;      // of a pixel whose neighbours lie mostl
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
 
 enum class Side : std::uint8_t { own, nearer, farther };
-
-bool finiteColour(const glm::vec4& c) {
-  return std::isfinite(c.r + c.g + c.b + c.a);
-}
 
 // The plane of the pixel at `offset` from another one, about that other one.
 DepthPlane moved(const DepthPlane& plane, glm::dvec2 offset) {
@@ -217,7 +215,7 @@ std::optional<Finder::SideColour> Finder::unmixed(int x, int y, Side side) const
       const int squared = (u - x) * (u - x) + (v - y) * (v - y);
       if (squared > nearest || !inside(u, v) || besideEdge_.at(u, v) || sideOf(x, y, u, v) != side) continue;
       const glm::vec4& colour = gbuffer_.beauty.at(u, v);
-      if (!finiteColour(colour)) continue;
+      if (!isFinite(colour)) continue;
       if (squared < nearest) {
         sum = glm::dvec4(0.0);
         offset = glm::dvec2(0.0);
@@ -241,7 +239,7 @@ glm::dvec4 Finder::continued(int x, int y, Side side, const glm::dvec4& colour, 
   const int u = x + static_cast<int>(std::lround(next.x)), v = y + static_cast<int>(std::lround(next.y));
   if (!inside(u, v) || besideEdge_.at(u, v) || sideOf(x, y, u, v) != side) return colour;
   const double farther = glm::length(glm::dvec2(u - x, v - y));
-  if (!(farther > distance + 0.5) || !finiteColour(gbuffer_.beauty.at(u, v))) return colour;
+  if (!(farther > distance + 0.5) || !isFinite(gbuffer_.beauty.at(u, v))) return colour;
   const glm::dvec4 change = (colour - glm::dvec4(gbuffer_.beauty.at(u, v))) / (farther - distance);
   return glm::max(colour + change * distance, glm::dvec4(0.0));
 }
@@ -327,7 +325,7 @@ void Finder::readAlpha(double alpha, Mixture& mixture) {
 }
 
 std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
-  if (!finiteColour(gbuffer_.beauty.at(x, y))) return std::nullopt;
+  if (!isFinite(gbuffer_.beauty.at(x, y))) return std::nullopt;
   for (const auto& [other, mostlyOwn] : besideOf(x, y))
     if (other != Side::own)
       if (const std::optional<EdgePixel> edge = edgeBeside(x, y, other, mostlyOwn)) return edge;

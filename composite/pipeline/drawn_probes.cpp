@@ -8,6 +8,7 @@
 #include "composite/pipeline/low_layers.h"
 #include "composite/pipeline/sums.h"
 #include "composite/resolve.h"
+#include "gbuffer/finite_colour.h"
 
 namespace pellucid {
 namespace {
@@ -51,10 +52,6 @@ class TexelMixer : public Mixer {
 
 // How far off a weight is whose sums overflow where the truth does not: farther than any that does not.
 constexpr double kOverflow = 1e200;
-
-bool isFinite(const glm::dvec3& colour) {
-  return std::isfinite(colour.r) && std::isfinite(colour.g) && std::isfinite(colour.b);
-}
 
 // Over the channels, too, and without what a background that is not finite makes.
 double meanSize(const std::vector<glm::dvec3>& colours) {

@@ -2,23 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <optional>
 
+#include "gbuffer/finite_colour.h"
+
 namespace pellucid {
-namespace {
-
-bool isFinite(const glm::vec4& colour) {
-  return std::isfinite(colour.r) && std::isfinite(colour.g) && std::isfinite(colour.b);
-}
-
-}  // namespace
 
 void noteWhatIsNotFinite(const Picture& picture, const GBuffer& background, Journal& journal) {
   std::size_t pixels = 0;
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
-    if (isFinite(picture.rgba[i]) || !isFinite(background.beauty[i])) continue;
+    if (isFinite(glm::dvec3(picture.rgba[i])) || !isFinite(glm::dvec3(background.beauty[i]))) continue;
     if (!first) first = i;
     ++pixels;
   }

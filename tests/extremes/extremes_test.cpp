@@ -191,5 +191,18 @@ TEST(Extremes, EveryMethodAndTierOverTheWholeRange) {
   }
 }
 
+// Powers of depth hold light up to 1e20.
+TEST(Extremes, SumsThatOverflowAreSaid) {
+  const ExtremeShot shot = writeExtremeShot(freshFolder("extremes-overflow"), 1);
+  const auto saidWith = [&](const char* weight) {
+    return runProgram({"composite", shot.picture, shot.layers, "-o", shot.picture + ".out.exr", "--aa", "1", "--method",
+                       "phenomenological", "--weight", weight})
+        .err;
+  };
+  const char* sentence = "pixels are not finite over a background that is, the first at ";
+  EXPECT_NE(saidWith("power:32").find(sentence), std::string::npos);
+  EXPECT_EQ(saidWith("uniform").find(sentence), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pellucid::test

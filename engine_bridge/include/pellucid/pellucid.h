@@ -128,8 +128,8 @@ typedef PLD_ENUM(pld_flag){
     PLD_FLAG_TRUST_TEXTURES =
         32,                /* not a diagnostic either: the textures and targets of every frame are of the kinds
                               and formats, and at least of the sizes, of those of the first whole frame since
-                              pld_resize(), which are looked at, and its context is current. The library then asks GL nothing about
-                              them; with PLD_FLAG_HOST_RESTORES it asks GL nothing at all */
+                              pld_resize(), which are looked at, and its context is current. The library then
+                              asks GL nothing about them; with PLD_FLAG_HOST_RESTORES it asks GL nothing at all */
     PLD_FLAG_VALIDATE = 16 /* pld_end() and pld_shadow_end() look at what the host did since the begin, and say of
                               the first thing that is wrong what it is, with PLD_ERROR_MISUSE: the framebuffer,
                               viewport, blending, colour masks or depth test are others; the seam's textures and
