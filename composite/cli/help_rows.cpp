@@ -58,6 +58,7 @@ const std::vector<HelpRow> kRows{
     {"--correction", kMethod, ""},
     {"--inference", kMethod, ""},
     {"--refract", kScattering, "HOW"},
+    {"--thin", kScattering, ""},
     {"--dispersion", kScattering, ""},
     {"--diffusion", kScattering, ""},
     {"--diffusion-scale", kScattering, "K0:K1"},

@@ -30,6 +30,15 @@ SubmissionOrder parseOrder(const std::string& text) {
 
 }  // namespace
 
+void addThinFlag(CLI::App& verb, std::string& thin) {
+  verb.add_option(
+          "--thin", thin,
+          "Glass of exporters that write no volumes, Blender's: auto takes balls and boxes as solid, file leaves "
+          "everything the thin sheet that the file makes of it")
+      ->check(CLI::IsMember({"auto", "file"}))
+      ->capture_default_str();
+}
+
 void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--camera", cameras,
                   "glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical), or "
@@ -39,6 +48,7 @@ void SceneFlags::addTo(CLI::App& verb) {
   verb.add_option("--environment", environment,
                   "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");
   verb.add_option("--set", overrides, "MATERIAL.key=value: " + gltf::setKeyNames())->allow_extra_args(false);
+  addThinFlag(verb, thin);
   verb.add_option("--scene-unit", unit, "Metres in one unit of the glTF, of fog and its grids; --unit is the picture's")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -83,6 +93,7 @@ void SceneFlags::into(Request& request) const {
   scene.lumensPerWatt = lumensPerWatt;
   scene.overrides = overrides;
   scene.assetRoot = assetRoot;
+  scene.closedGlass = thin == "auto";
   scene.streamBytes = pages;
   const std::string& view = request.shot.read.view;
   request.shot.camera = cameraOfView(cameras, view, {view});

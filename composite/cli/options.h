@@ -14,9 +14,12 @@
 
 namespace pellucid::cli {
 
+// --thin auto|file, of every verb that draws glass.
+void addThinFlag(CLI::App& verb, std::string& thin);
+
 struct SceneFlags {
   std::vector<std::string> cameras;  // one, or VIEW=one for each view
-  std::string environment, assetRoot;
+  std::string environment, assetRoot, thin = "auto";
   std::vector<std::string> overrides;
   double lumensPerWatt = 683.0, unit = 1.0;  // metres in one unit of the glTF
   std::string textureFilter = "mipmap", mask = "smooth", order = "file", budget = "256M";

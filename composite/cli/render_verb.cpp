@@ -18,6 +18,7 @@ struct SceneRenderFlags {
   GbufferFlags opaque;  // what both steps read, too
   FogFlags fog;
   int passes = kSharedPasses;
+  std::string thin = "auto";
 };
 
 // The second step: what `composite` does with the first one's file.
@@ -29,6 +30,7 @@ Request requestOver(const std::string& opaque, const SceneRenderFlags& flags, bo
   request.shot.scene.lumensPerWatt = flags.opaque.lumensPerWatt;
   request.shot.scene.overrides = flags.opaque.overrides;
   request.shot.scene.assetRoot = flags.opaque.assetRoot;
+  request.shot.scene.closedGlass = flags.thin == "auto";
   request.shot.surroundings = surroundingsChoice(flags.opaque.environment);
   request.shot.colour = flags.opaque.colour.request();
   request.passes = flags.passes;
@@ -93,6 +95,7 @@ void addRender(CLI::App& app) {
   verb->add_option("--set", opaque.overrides,
                    "MATERIAL.key=value: thin, collimation, coverage, additive, lowResolution, castsShadow")
       ->allow_extra_args(false);
+  addThinFlag(*verb, flags->thin);
   verb->add_option("--asset-root", opaque.assetRoot,
                    "Folder whose files a glTF may name besides those under its own folder");
   verb->add_option("--scene-unit", opaque.unit, "Metres in one unit of the glTF, of fog and its grids")

@@ -49,6 +49,8 @@ Program buildProgram(const std::string& vertexStage, const std::string& fragment
   program.pointScale = glGetUniformLocation(name, "pointScale");
   program.maskResolved = glGetUniformLocation(name, "maskResolved");
   program.turn = glGetUniformLocation(name, "turn");
+  program.bodyKind = glGetUniformLocation(name, "bodyKind");
+  program.bodyFromView = glGetUniformLocation(name, "bodyFromView");
   return program;
 }
 

@@ -13,6 +13,7 @@ struct Program {
   // Locations of the plain uniforms, -1 where this permutation has no use for one; GL ignores writes to -1.
   GLint viewFromObject = -1, normalFromObject = -1, thicknessScale = -1, instanceColour = -1;
   GLint instanceIdentity = -1, turn = -1, pointScale = -1, maskResolved = -1;
+  GLint bodyKind = -1, bodyFromView = -1;
 };
 
 // Throws std::logic_error with the compiler's log: shaders are ours, not the user's.

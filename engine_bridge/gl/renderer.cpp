@@ -9,6 +9,7 @@
 #include "engine_bridge/scene/foliage.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/view_point.h"
+#include "shaders/closed_body_text.h"
 
 namespace pellucid::gl {
 namespace {
@@ -261,6 +262,12 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   const Window part{data.x0 + superTile.x0, data.y0 + superTile.y0, data.x0 + superTile.x1, data.y0 + superTile.y1};
   frame_ = FrameBlock{};
   frame_.clipFromView = glm::mat4(clipFromView(camera_, gbuffer_->display, part, settings.sample));
+  // The fragments know which of them lie behind the eye's plane. Cut there before, an orthographic view's triangles would
+  // end where the rasteriser rounds the cut to, which for steep ones is far from the plane.
+  if (camera_.orthographic) {
+    frame_.clipFromView[2][2] = 0.0f;
+    frame_.clipFromView[3][2] = 0.5f;
+  }
   frame_.surroundings = glm::vec4(settings.surroundings, 0.0f);
   frame_.weightNear = settings.weight.rangeNear;
   frame_.weightFar = settings.weight.rangeFar;
@@ -380,6 +387,14 @@ const Program& Renderer::programFor(int primitive, Output output) {
   return *program;
 }
 
+void Renderer::setBody(const Program& program, const Primitive& primitive, const Placed& placed) {
+  const bool known = primitive.body && glm::determinant(placed.viewFromObject) != 0.0;
+  glUniform1i(program.bodyKind, known ? primitive.body->kind : shading::PLD_BODY_NONE);
+  if (!known) return;
+  const glm::mat4 bodyFromView(primitive.body->fromObject * glm::inverse(placed.viewFromObject));
+  glUniformMatrix4fv(program.bodyFromView, 1, GL_FALSE, &bodyFromView[0][0]);
+}
+
 void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
   const Program* program = nullptr;
   int boundMaterial = -1;
@@ -416,6 +431,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     glUniform1f(program->pointScale, placed.thicknessScale * material.pointScale);
     glUniform1f(program->maskResolved, maskResolved);
     glUniform1ui(program->instanceIdentity, instance.identity);
+    if (program->bodyKind >= 0) setBody(*program, primitive, placed);
     const auto corners = static_cast<GLsizei>(one.triangles * 3);
     // The stage pulls its vertices: it needs all three of a triangle, and its number.
     glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.firstTriangle * 3), corners);

@@ -90,6 +90,7 @@ class Renderer {
   void describeSurfaces();
   void traceShadows(const Window& superTile);
   void drawSolids();
+  void setBody(const Program& program, const Primitive& primitive, const Placed& placed);
   void drawChunk(const std::vector<ChunkDraw>& draws, Output output);
 
   const Scene& scene_;

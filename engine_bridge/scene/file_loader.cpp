@@ -66,7 +66,8 @@ FileLoader::FileLoader(GltfFile& file, std::size_t fileIndex, const SceneOptions
       notes_(notes),
       again_(again),
       primitives_(file, notes, options.streamBytes > 0),
-      textures_(file, scene.textures, notes) {}
+      textures_(file, scene.textures, notes),
+      closedGlass_(file, options.closedGlass) {}
 
 void FileLoader::load() {
   const std::vector<PlacedNode> nodes = placeNodes(file_, options_.metresPerUnit, notes_);
@@ -78,6 +79,7 @@ void FileLoader::load() {
   poses_.emplace(file_, nodes, options_.metresPerUnit);
   for (const PlacedNode& node : nodes) placeMesh(node);
   poses_.reset();
+  closedGlass_.apply(scene_, firstMaterial_, scene_.materials.size(), readNow_, notes_);
   readLights(file_, nodes, options_, notes_, scene_.lights);
   readCameras(file_, nodes, options_.metresPerUnit, notes_, scene_.cameras);
 }

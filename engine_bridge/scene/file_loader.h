@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "engine_bridge/scene/closed_glass.h"
 #include "engine_bridge/scene/gltf.h"
 #include "engine_bridge/scene/instancing.h"
 #include "engine_bridge/scene/nodes.h"
@@ -67,6 +68,7 @@ class FileLoader {
   PrimitiveReader primitives_;
   TextureReader textures_;
   std::optional<PoseReader> poses_;
+  ClosedGlass closedGlass_;
   std::map<Key, Loaded> loaded_;
   std::set<int> readNow_;
   std::map<int, bool> shows_;    // by primitive: canShow

@@ -13,7 +13,9 @@ struct SceneOptions {
   double metresPerUnit = 1.0;          // --unit
   double lumensPerWatt = 683.0;        // --lumens-per-watt: glTF lights are photometric, renders are not
   std::vector<std::string> overrides;  // --set MATERIAL.key=value
-  std::string assetRoot;               // --asset-root: files may lie here besides under their scene's folder
+  // --thin auto: where a file's exporter writes no volumes, closed meshes of glass are solid. closed_glass.h
+  bool closedGlass = false;
+  std::string assetRoot;  // --asset-root: files may lie here besides under their scene's folder
   // Not 0: triangles stay in their files until they are drawn, which only the transparent GL pass can do, and about so
   // many bytes of the files are in memory at once.
   std::size_t streamBytes = 0;

@@ -114,13 +114,21 @@ struct ColourRange {
 
 class TriangleSource;  // triangle_source.h
 
+// A shape that a mesh fills in its own space, so that a ray inside is known to leave it.
+// shaders/shared/closed_body.glsl
+struct SolidBody {
+  int kind = 0;                // shading::PLD_BODY_*
+  glm::dmat4 fromObject{1.0};  // to the unit ball, or to [-1,1]^3
+};
+
 struct Primitive {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from the front *as placed* by their instances
   int material = 0;                    // index into Scene::materials
   // When set, the triangles lie in their file, and vertices and indices are empty. SceneOptions::streamBytes
   std::shared_ptr<const TriangleSource> streamed = nullptr;
-  bool points = false;  // each triangle is a particle: see scene/points.h. Always streamed
+  bool points = false;                           // each triangle is a particle: see scene/points.h. Always streamed
+  std::optional<SolidBody> body = std::nullopt;  // of glass that SceneOptions::closedGlass has found
 
   std::size_t triangles() const;
 };

@@ -2,8 +2,23 @@
 // Refraction and diffusion of the layer under this fragment.
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
+#include "shared/closed_body.glsl"
 #include "shared/diffusion.glsl"
 #ifdef SCATTER
+#ifdef REFRACTS
+uniform int bodyKind;       // PLD_BODY_*
+uniform mat4 bodyFromView;  // of such a body
+
+// Bodies say themselves how far light goes in them.
+vec2 offsetOf(RefractionSettings settings, vec3 toEye, vec3 normal, float eta, float behind, float thickness) {
+  if (bodyKind == PLD_BODY_NONE || settings.mode == PLD_REFRACT_FIXED || settings.mode == PLD_REFRACT_OFF)
+    return refractionOffset(settings, viewPosition, toEye, normal, eta, behind, thickness);
+  ClosedBody body;
+  body.kind = bodyKind;
+  body.fromView = bodyFromView;
+  return bodyOffset(settings, body, viewPosition, toEye, normal, eta, behind);
+}
+#endif
 
 // Depth of what stands behind all layers, planar metres.
 float backdropZ(ivec2 pixel) {
@@ -40,11 +55,11 @@ ScatterHere scatterHere(Layer layer, Surface surface, ivec2 pixel) {
     thickness *= thicknessTexel();
 #endif
     float behind = backdropZ(pixel);
-    vec2 offset = refractionOffset(settings, viewPosition, toEye, normal, material.scattering.z, behind, thickness);
+    vec2 offset = offsetOf(settings, toEye, normal, material.scattering.z, behind, thickness);
     scatter.offset = recordedOffset(offset);
 #ifdef DISPERSES
-    vec2 red = refractionOffset(settings, viewPosition, toEye, normal, material.dispersion.r, behind, thickness);
-    vec2 blue = refractionOffset(settings, viewPosition, toEye, normal, material.dispersion.g, behind, thickness);
+    vec2 red = offsetOf(settings, toEye, normal, material.dispersion.r, behind, thickness);
+    vec2 blue = offsetOf(settings, toEye, normal, material.dispersion.g, behind, thickness);
     dispersion = vec4(red - offset, blue - offset);
 #endif
   }

@@ -52,6 +52,23 @@ void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
     flags.words.push_back(std::string("--weight=") + oneOf(random, kWeights));
 }
 
+// The surroundings light the fog; of what it scatters all that is not its albedo's share is theirs.
+void drawAir(const reference::Air& air, Random& random, DrawnFlags& flags) {
+  if (!(air.density > 0.0)) return;
+  const double part = random.between(0.3, 1.0);
+  std::string fog = fmt::format("--fog=density={},albedo={}", air.density, part);
+  if (air.farthest != reference::Air().farthest) fog += fmt::format(",far={}", air.farthest);
+  if (air.inside) {
+    const reference::Vec3 low = air.inside->centre - air.inside->half, high = air.inside->centre + air.inside->half;
+    fog += fmt::format(",box={}:{}:{}:{}:{}:{}", low.x, low.y, low.z, high.x, high.y, high.z);
+  }
+  if (chance(random, 0.3)) fog += fmt::format(",g={:.2f}", random.between(-0.9, 0.9));
+  if (chance(random, 0.3)) fog += fmt::format(",steps={}", 1 + random.below(96));
+  flags.words.push_back(fog);
+  flags.words.push_back(
+      fmt::format("--environment={},{},{}", air.light.r / part, air.light.g / part, air.light.b / part));
+}
+
 }  // namespace
 
 DrawnFlags drawFlags(const DrawnScene& scene, Random& random) {
@@ -71,6 +88,7 @@ DrawnFlags drawFlags(const DrawnScene& scene, Random& random) {
     flags.softMask = false;
     flags.words.emplace_back("--mask=hard");
   }
+  drawAir(scene.numbers.air, random, flags);
   if (chance(random, 0.2)) flags.words.emplace_back("--budget=1M");
   if (chance(random, 0.2)) flags.words.push_back(fmt::format("--order=shuffle:{}", random.below(100)));
   return flags;

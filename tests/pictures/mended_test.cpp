@@ -98,5 +98,22 @@ TEST_F(Mended, PostsBeforeNothingUnderWideFilters) {
   }
 }
 
+// Parallel rays see a pane up to the eye's plane, and no rasteriser rounds where that cuts it.
+TEST_F(Mended, PanesThroughTheEyesPlaneOfParallelRays) {
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    SCOPED_TRACE(i);
+    Random random(500 + i);
+    SceneMaker maker("meshes", random, 100.0);
+    maker.look(36, 28, 50.0, true);
+    maker.plane(maker.at(0, 0, 200.0), {0, 0, 1});
+    const double steep = (80.0 + static_cast<double>(i)) * kDegrees, spin = 0.7 * static_cast<double>(i);
+    const Vec3 normal(std::sin(steep) * std::cos(spin), std::sin(steep) * std::sin(spin), std::cos(steep));
+    PlacedMesh& mesh = maker.place(quadSheet(400.0, 400.0), maker.at(0.01, 0.02, 0.0), facing(normal, 0.3));
+    mesh.coat.colour = {0.1, 0.8, 0.3, 0.75};
+    mesh.coat.bothSides = true;
+    expectRight(maker, flagsOf(64));
+  }
+}
+
 }  // namespace
 }  // namespace pellucid::test

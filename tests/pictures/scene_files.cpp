@@ -25,9 +25,15 @@ float storedDepth(const reference::Column& column, const OpaqueForm& form) {
   return static_cast<float>(kind == "negative" ? -z : z);
 }
 
+constexpr double kEmissionAtMost = 2.0;  // glTF's own factor ends at 1
+
 class GlbFile {
  public:
-  json root{{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"extensionsUsed", {"KHR_materials_unlit"}}};
+  json root{{"asset", {{"version", "2.0"}}},
+            {"scene", 0},
+            {"extensionsUsed",
+             {"KHR_materials_unlit", "KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_specular",
+              "KHR_materials_emissive_strength"}}};
 
   std::size_t view(const std::string& bytes) {
     while (binary_.size() % 4) binary_.push_back('\0');
@@ -86,8 +92,20 @@ json materialOf(const reference::Coat& coat) {
   }
   json material{{"pbrMetallicRoughness", colour},
                 {"doubleSided", coat.bothSides},
-                {"alphaMode", coat.covering == reference::Covering::blend ? "BLEND" : "MASK"},
-                {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+                {"alphaMode", coat.covering == reference::Covering::blend ? "BLEND" : "MASK"}};
+  if (coat.glass) {
+    // Of the index of what is around it and without gloss: it neither bends nor mirrors.
+    material["emissiveFactor"] = {coat.emission.r / kEmissionAtMost, coat.emission.g / kEmissionAtMost,
+                                  coat.emission.b / kEmissionAtMost};
+    material["extensions"] = {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
+                              {"KHR_materials_ior", {{"ior", 1.0}}},
+                              {"KHR_materials_specular", {{"specularFactor", 0.0}}},
+                              {"KHR_materials_emissive_strength", {{"emissiveStrength", kEmissionAtMost}}}};
+    material["pbrMetallicRoughness"]["metallicFactor"] = 0.0;
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.0;
+  } else {
+    material["extensions"] = {{"KHR_materials_unlit", json::object()}};
+  }
   if (coat.covering == reference::Covering::mask) material["alphaCutoff"] = coat.cutoff;
   return material;
 }

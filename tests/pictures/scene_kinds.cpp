@@ -236,6 +236,31 @@ void textured(SceneMaker& maker, Random& random, bool cut) {
   }
 }
 
+// Most of the sheets become glass, coloured and glowing.
+void makeGlass(SceneMaker& maker, Random& random) {
+  maker.scene().oneColour = false;
+  for (PlacedMesh& mesh : maker.scene().placed) {
+    if (mesh.coat.texture >= 0 || !mesh.colours.empty() || chance(random, 0.3)) continue;
+    mesh.coat.glass = true;
+    mesh.coat.colour = Vec4(glm::min(drawnColour(random), Vec3(1.0)), chance(random, 0.5) ? 1.0 : mesh.coat.colour.a);
+    if (chance(random, 0.5)) mesh.coat.emission = drawnColour(random);
+  }
+}
+
+// Fog, of a few depths of the scene, everywhere or in a box that may hold the eye.
+void fillAir(SceneMaker& maker, Random& random) {
+  const double size = maker.scene().size;
+  reference::Air& air = maker.scene().numbers.air;
+  air.density = logBetween(random, 0.01, 3.0) / size;
+  air.light = maker.scene().oneColour ? maker.oneColour() : glm::min(drawnColour(random), Vec3(1.0));
+  if (chance(random, 0.5)) air.farthest = random.between(0.5, 3.0) * size;
+  if (chance(random, 0.6)) return;
+  const auto part = [&] { return size * random.between(0.2, 1.0); };
+  const double across = part(), up = part();
+  air.inside = reference::Box{Vec3(maker.worldFromEye() * Vec4(maker.at(0, 0, random.between(0.0, 1.2) * size), 1.0)),
+                              glm::dmat3(1.0), Vec3(across, up, part())};
+}
+
 void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
   if (kind == "decals") return decals(maker, random);
   if (kind == "contact") return contact(maker, random);
@@ -244,16 +269,19 @@ void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
   if (kind == "meshes") return meshes(maker, random);
   if (kind == "textures") return textured(maker, random, false);
   if (kind == "cut-outs") return textured(maker, random, true);
-  if (kind != "far") throw std::invalid_argument("no kind of scene '" + kind + "'");
-  static const std::vector<std::string> any{"decals", "contact", "posts", "shapes", "meshes"};
-  drawInto(any[random.below(5)], maker, random);
+  static const std::vector<std::string> any{"decals", "contact", "posts", "shapes", "meshes", "textures", "cut-outs"};
+  if (kind == "far") return drawInto(any[random.below(5)], maker, random);
+  if (kind != "air" && kind != "glass") throw std::invalid_argument("no kind of scene '" + kind + "'");
+  drawInto(any[random.below(static_cast<std::uint32_t>(any.size()))], maker, random);
+  if (kind == "glass") makeGlass(maker, random);
+  if (kind == "air" || chance(random, 0.3)) fillAir(maker, random);
 }
 
 }  // namespace
 
 const std::vector<std::string>& sceneKinds() {
-  static const std::vector<std::string> kinds{"decals", "contact",  "posts",    "shapes",
-                                              "meshes", "textures", "cut-outs", "far"};
+  static const std::vector<std::string> kinds{"decals",   "contact",  "posts", "shapes", "meshes",
+                                              "textures", "cut-outs", "far",   "air",    "glass"};
   return kinds;
 }
 

@@ -136,12 +136,12 @@ void SceneMaker::drawEye(double farOff) {
   worldFromEye_[3] = glm::dvec4(eye.at, 1.0);
 }
 
-void SceneMaker::look(int width, int height, double half) {
+void SceneMaker::look(int width, int height, double half, bool parallel) {
   reference::Eye& eye = scene_.numbers.eye;
   eye.width = eye.displayWidth = width;
   eye.height = eye.displayHeight = height;
   eye.firstX = eye.firstY = 0;
-  eye.parallel = false;
+  eye.parallel = parallel;
   eye.half = {half * width / height, half};
 }
 

@@ -40,13 +40,15 @@ class SceneMaker {
   PlacedMesh& place(const Sheet& sheet, const Vec3& origin, const glm::dmat3& axes, bool baked = false);
   // On a face, which it must lie within: moved along the normal of `axes` it lies off it.
   PlacedMesh& placeOn(const reference::Face& face, const Sheet& sheet, const Vec3& origin, const glm::dmat3& axes);
+  Vec3 oneColour() const { return glm::min(one_, Vec3(1.0)); }
   double half(int axis) const { return scene_.numbers.eye.half[axis]; }
   bool parallel() const { return scene_.numbers.eye.parallel; }
   // A place at a depth, at parts (-1 to 1) of the picture.
   Vec3 at(double x, double y, double z) const;
   DrawnScene& scene() { return scene_; }
-  // Of one's own making, instead of what was drawn: a whole picture through a pinhole, `half` of it high at distance 1.
-  void look(int width, int height, double half);
+  // Of one's own making, instead of what was drawn: a whole picture through a pinhole, `half` of it high at distance 1,
+  // or along parallel rays, `half` of it high in metres.
+  void look(int width, int height, double half, bool parallel = false);
   DrawnScene finish();
 
  private:

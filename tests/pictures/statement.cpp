@@ -19,9 +19,10 @@ using reference::Vec4;
 constexpr double kRounding = 1e-5;
 // Of a place in the picture, pixels: the rays of a pass are those of floats.
 constexpr double kPlace = 1e-4;
-constexpr double kWide = 0.01;  // of such a margin, pixels: within it more than one edge may lie
-constexpr int kFewPasses = 4;   // may all see what few places see
-constexpr int kNear = 5;        // pixels within which another face may touch the slope of this one
+constexpr double kWide = 0.01;       // of such a margin, pixels: within it more than one edge may lie
+constexpr int kFewPasses = 4;        // may all see what few places see
+constexpr double kMostAslant = 3.0;  // at 70.5 degrees the 6 pixels of a texel and more are 2
+constexpr int kNear = 5;             // pixels within which another face may touch the slope of this one
 
 }  // namespace
 
@@ -116,18 +117,27 @@ void Statements::eachCut(const Column& column, const Face& face, double nearest,
     any = true;
   }
   if (any) eachCut(loose, face, nearest, farthest, take);
-  take(reference::Picture::shownBefore(column, face, nearest));
-  take(reference::Picture::shownBefore(column, face, farthest));
+  // What touches a face shows at whatever depth lies behind it, but the air ends at the depth itself, which is rounded
+  // to either side.
+  const bool foggy = picture_.scene().air.density > 0.0 && farthest != kNothing;
+  const double rounded = farthest - nearest + flags_.depthStep() * nearest;
+  const auto takeCut = [&](const Column& cut, double z) {
+    take(picture_.shownBefore(cut, face, z));
+    if (!foggy) return;
+    for (const double end : {nearest - rounded, nearest + rounded}) take(picture_.shownBefore(cut, face, z, end));
+  };
+  takeCut(column, nearest);
+  takeCut(column, farthest);
   for (std::size_t i = 0; i < column.crossings.size(); ++i) {
     const reference::Crossing& crossing = column.crossings[i];
     const double off = rounding_ * crossing.steep, z = crossing.layer.z;
     if (z + off > nearest && z - off < farthest)
-      for (const double cut : {z - 2.0 * off, z + 2.0 * off}) take(reference::Picture::shownBefore(column, face, cut));
+      for (const double cut : {z - 2.0 * off, z + 2.0 * off}) takeCut(column, cut);
     if (i == 0 || z - column.crossings[i - 1].layer.z > off + rounding_ * column.crossings[i - 1].steep) continue;
     Column other = column;  // which of the two is nearer floats do not tell
     std::swap(other.crossings[i - 1], other.crossings[i]);
     std::swap(other.crossings[i - 1].layer.z, other.crossings[i].layer.z);
-    take(reference::Picture::shownBefore(other, face, farthest));
+    takeCut(other, farthest);
   }
 }
 
@@ -183,7 +193,7 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
   };
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Vec2 at = Vec2(x, y) + places_[i];
-    const Vec4 nominal = valueOf(reference::Picture::shownBefore(columns[i], face, depthOf(columns[i])), behind);
+    const Vec4 nominal = valueOf(picture_.shownBefore(columns[i], face, depthOf(columns[i])), behind);
     Range range;
     range.take(nominal);
     const auto take = [&](const Column& column) {
@@ -244,7 +254,21 @@ bool Statements::maybeTakenApart(int x, int y) const {
   return beside && faces.size() > 2;
 }
 
+// Whether a texture is seen so far aslant that its coarser levels count, of which the reference has none.
+bool Statements::hasCoarseTexels(int x, int y) const {
+  const auto isTextured = [&](const reference::Mesh& mesh) { return mesh.coat.texture >= 0; };
+  if (std::none_of(picture_.scene().meshes.begin(), picture_.scene().meshes.end(), isTextured)) return false;
+  return std::any_of(places_.begin(), places_.end(), [&](const glm::dvec2& place) {
+    const Column column = picture_.columnAt(x + place.x, y + place.y);
+    return std::any_of(column.crossings.begin(), column.crossings.end(), [&](const reference::Crossing& crossing) {
+      return crossing.steep > kMostAslant &&
+             isTextured(picture_.scene().meshes[static_cast<std::size_t>(crossing.mesh)]);
+    });
+  });
+}
+
 std::vector<Statement> Statements::of(int x, int y) const {
+  if (hasCoarseTexels(x, y)) return {};
   const Surroundings around = surroundingsOf(x, y);
   if (flags_.passes == 1) return {innerAt(x, y, around)};
   const bool alone = around.faces.size() == 1 && around.faces[0] == centre(x, y);

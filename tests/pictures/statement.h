@@ -31,7 +31,7 @@ class Statements {
   //   places  where the passes sample the pixel, (0..1, y down), the pixel's square; beyond it for wide filters
   Statements(const DrawnScene& scene, const reference::Picture& picture, const reference::Samples& samples,
              const DrawnFlags& flags, const Image<glm::vec4>& beauty, std::vector<glm::dvec2> places);
-  // One, or two for pixels of which the filtered mean is stated as well.
+  // One, or two for pixels of which the filtered mean is stated as well; none where the reference cannot say.
   std::vector<Statement> of(int x, int y) const;
 
  private:
@@ -59,6 +59,7 @@ class Statements {
   Statement mixedAt(int x, int y) const;
   std::optional<Statement> edgeAt(int x, int y, const Surroundings& around) const;
   bool maybeTakenApart(int x, int y) const;
+  bool hasCoarseTexels(int x, int y) const;
   bool liesBehind(int x, int y, const reference::Face& own, const reference::Face& other) const;
   bool tellsColour(int x, int y, const reference::Face& face, double& impurity) const;
   const reference::Face& centre(int x, int y) const { return centres_.at(x, y).face; }

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -55,9 +56,12 @@ struct Texels {
 };
 
 enum class Covering { blend, mask };
-// An unlit surface: what it shows is its colour, and what it covers lets nothing through.
+// A surface that no light meets: what it shows is its colour, and what it covers lets nothing through. Glass shows what
+// it emits, and what lies behind times its colour.
 struct Coat {
   Vec4 colour{1.0};
+  bool glass = false;
+  Vec3 emission{0.0};  // of glass
   Covering covering = Covering::blend;
   double cutoff = 0.5;
   bool bothSides = true;
@@ -77,8 +81,17 @@ struct Mesh {
   Face on;  // on which all of it lies, if any: there it is in front, whatever its corners round to
 };
 
+// Even fog under even light, up to what is opaque.
+struct Air {
+  double density = 0.0;       // extinction of a metre
+  Vec3 light{0.0};            // that all of it would show
+  double farthest = 1000.0;   // metres from the eye, or from the eye's plane, beyond which there is none
+  std::optional<Box> inside;  // along the world's axes
+};
+
 struct PictureScene {
   Eye eye;
+  Air air;
   std::vector<Solid> solids;
   std::vector<Texels> textures;
   std::vector<Mesh> meshes;

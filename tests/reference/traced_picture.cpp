@@ -51,6 +51,22 @@ Vec4 colourOf(const PictureScene& scene, const Mesh& mesh, const std::array<int,
   return colour;
 }
 
+// Optical depth of the air between two depths on a ray.
+double airBetween(const Air& air, const Ray& ray, double first, double last) {
+  const double metres = glm::length(ray.along);
+  last = std::min(last, air.farthest / metres);
+  for (int axis = 0; axis < 3 && air.inside; ++axis) {
+    const double from = ray.from[axis] - air.inside->centre[axis], way = ray.along[axis], half = air.inside->half[axis];
+    if (way == 0.0) {
+      if (std::abs(from) > half) return 0.0;
+      continue;
+    }
+    first = std::max(first, std::min((-half - from) / way, (half - from) / way));
+    last = std::min(last, std::max((-half - from) / way, (half - from) / way));
+  }
+  return air.density * metres * std::max(last - first, 0.0);
+}
+
 }  // namespace
 
 Picture::Picture(const PictureScene& scene) : scene_(scene) {
@@ -113,7 +129,9 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
       if (!(covered > 0.0)) continue;
       Crossing crossing{{}, 1.0 / std::abs(within->facing), mesh.on, static_cast<int>(m)};
       crossing.layer.coverage = covered;
-      crossing.layer.reflected = {colour.r, colour.g, colour.b};
+      const Vec3 shows = mesh.coat.glass ? mesh.coat.emission : Vec3(colour);
+      crossing.layer.reflected = {shows.r, shows.g, shows.b};
+      if (mesh.coat.glass) crossing.layer.transmission = {colour.r, colour.g, colour.b};
       crossing.layer.z = within->z;
       column.crossings.push_back(crossing);
     }
@@ -123,11 +141,19 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
   return column;
 }
 
-Shown Picture::shownBefore(const Column& column, const Face& face, double z) {
+Shown Picture::shownBefore(const Column& column, const Face& face, double z, double airEnd) const {
   Shown shown;
+  double reached = 0.0;
+  const auto passAir = [&](double end) {
+    const double through = std::exp(-airBetween(scene_.air, column.ray, reached, std::min(end, airEnd)));
+    shown.light += shown.transmission * (1.0 - through) * scene_.air.light;
+    shown.transmission *= through;
+    reached = std::max(reached, end);
+  };
   for (const Crossing& crossing : column.crossings) {
     const bool touches = face.solid >= 0 && crossing.on == face;
     if (!touches && crossing.layer.z > z) continue;
+    passAir(crossing.layer.z);
     const Layer& layer = crossing.layer;
     for (std::size_t c = 0; c < 3; ++c) {
       const auto channel = static_cast<glm::length_t>(c);
@@ -135,6 +161,7 @@ Shown Picture::shownBefore(const Column& column, const Face& face, double z) {
       shown.transmission[channel] *= 1.0 - layer.coverage * (1.0 - layer.transmission[c]);
     }
   }
+  passAir(airEnd);
   return shown;
 }
 

@@ -41,8 +41,10 @@ class Picture {
   const PictureScene& scene() const { return scene_; }
   Column columnAt(double x, double y, const CutBand& band = {}) const;
   // What is shown of an opaque face that lies at depth z: what lies on it is in front.
-  static Shown shownBefore(const Column& column, const Face& face, double z);
-  static Shown shownBefore(const Column& column) { return shownBefore(column, column.opaque.face, column.opaque.z); }
+  //   airEnd  depth at which the air ends
+  Shown shownBefore(const Column& column, const Face& face, double z, double airEnd) const;
+  Shown shownBefore(const Column& column, const Face& face, double z) const { return shownBefore(column, face, z, z); }
+  Shown shownBefore(const Column& column) const { return shownBefore(column, column.opaque.face, column.opaque.z); }
   // Of what is opaque, 0 and clear where there is nothing.
   Vec4 background(const Column& column) const;
   // The picture at a place: sorted light over what is opaque, and how much of it is there.
