@@ -6,7 +6,7 @@ set(folder ${CMAKE_BINARY_DIR}/headers)
 file(CONFIGURE OUTPUT ${folder}/flags.cpp CONTENT "" @ONLY)
 add_library(pellucid_header_flags OBJECT EXCLUDE_FROM_ALL ${folder}/flags.cpp)
 target_link_libraries(pellucid_header_flags PRIVATE
-  pellucid_cli pellucid_test_support OpenEXR::OpenEXR OpenImageIO::OpenImageIO PkgConfig::EPOXY PkgConfig::EGL)
+  pellucid_cli pellucid_c pellucid_test_support OpenEXR::OpenEXR OpenImageIO::OpenImageIO PkgConfig::EPOXY PkgConfig::EGL)
 if(TARGET embree)
   target_link_libraries(pellucid_header_flags PRIVATE embree)
 endif()
