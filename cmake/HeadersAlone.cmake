@@ -20,7 +20,7 @@ set(parse ${CMAKE_CXX_COMPILER} -std=c++${CMAKE_CXX_STANDARD} -I${PROJECT_SOURCE
 set(stamps)
 foreach(room shaders gbuffer engine_bridge composite samples tests)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${room}/*.h)
-  list(FILTER headers EXCLUDE REGEX "^samples/(osg|vtk)/")
+  list(FILTER headers EXCLUDE REGEX "^samples/(osg|vtk|vulkan)/")
   foreach(header IN LISTS headers)
     string(REPLACE "/" "_" name ${header})
     set(stem ${folder}/${name})
