@@ -9,7 +9,6 @@
 namespace pellucid::c {
 namespace {
 
-constexpr uint64_t kMostFragments = uint64_t{1} << 31;  // as far as shaders/gl/exact_output.glsl counts
 constexpr float kMostAPixel = 65536.0f;
 static_assert(kListBlocks == kMostStorage);
 
@@ -84,10 +83,10 @@ pld_status FragmentRoom::make(int width, int height) {
   const double wanted = static_cast<double>(device_.info.fragments_per_pixel);
   const auto pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
   const auto room = static_cast<uint64_t>(std::ceil(wanted * static_cast<double>(pixels)));
-  const uint64_t linkBytes = 4 * (1 + pixels + room), recordBytes = 16 * room;
+  const ListSizes sizes = listSizes(width, height, room);
   GLint64 most = 0;
   gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-  const uint64_t largest = std::max(linkBytes, recordBytes);
+  const uint64_t largest = std::max(sizes.links, sizes.record);
   if (room > kMostFragments || largest > static_cast<uint64_t>(most))
     return device_.fail(
         PLD_ERROR_MEMORY,
@@ -97,7 +96,7 @@ pld_status FragmentRoom::make(int width, int height) {
   const int blocks = listBlocks(device_.permutation);
   gl.GenBuffers(blocks, lists_);
   for (int i = 0; i < blocks; ++i) {
-    const uint64_t bytes = i == 0 ? linkBytes : recordBytes;
+    const uint64_t bytes = i == 0 ? sizes.links : sizes.record;
     gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, lists_[i]);
     gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_COPY);
     bytes_ += bytes;
@@ -126,7 +125,7 @@ void FragmentRoom::bind() const {
 void FragmentRoom::open() const {
   const GlFunctions& gl = device_.gl;
   bind();
-  const auto heads = static_cast<GLsizeiptr>(4 * (1 + static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_)));
+  const auto heads = static_cast<GLsizeiptr>(listSizes(width_, height_, room_).heads);
   gl.ClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, heads, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
   gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   device_.allowColours(0, false);

@@ -1,12 +1,9 @@
 // Whether a frame of the host's can be drawn: one sentence for each thing that cannot.
 #pragma once
+#include "engine_bridge/c/frame_numbers.h"
 #include "engine_bridge/c/pass_device.h"
 
 namespace pellucid::c {
-
-// All of pld_fixed.
-constexpr uint32_t kEveryField = PLD_FIXED_UNITS | PLD_FIXED_EXPOSURE | PLD_FIXED_WEIGHT | PLD_FIXED_REFRACTION |
-                                 PLD_FIXED_DIFFUSION | PLD_FIXED_PROJECTION | PLD_FIXED_LENS;
 
 // The numbers of a frame; of those that `fields` (pld_fixed) names.
 pld_status checkNumbers(Device& device, const char* call, const pld_frame& frame, uint32_t fields);

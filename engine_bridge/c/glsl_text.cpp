@@ -1,74 +1,39 @@
 #include "engine_bridge/c/glsl_text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstdio>
-#include <regex>
-#include <set>
-#include <sstream>
 
+#include "engine_bridge/c/text_words.h"
 #include "shaders/shader_source.h"
 
 namespace pellucid::c {
 namespace {
 
-bool isWord(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+using Words = std::unordered_set<std::string_view>;
+
+// GLSL 3.30 has no `precise`.
+bool isMissing(std::string_view word, const GlslTarget& target) {
+  return target.dialect == PLD_DIALECT_GL && target.version < 400 && word == "precise";
 }
 
-// Every word of `text`, as `changed` wants it. Comments go: a compiler has no use for them, and a log shows the lines.
-template <class F>
-std::string withWords(const std::string& text, F changed) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    if (text.compare(i, 2, "//") == 0) {
-      i = std::min(text.find('\n', i), text.size());
-      while (!out.empty() && out.back() == ' ') out.pop_back();
-    } else if (isWord(text[i])) {
-      std::size_t end = i;
-      while (end < text.size() && isWord(text[end])) ++end;
-      out += changed(text.substr(i, end - i));
-      i = end;
-    } else {
-      out += text[i++];
-    }
-  }
-  return out;
-}
-
-// What a text declares outside of functions: functions, structs, outputs, constants, variables, macros, and macros that
-// it looks for. Outputs may stand in a macro, several of them in one line.
-std::set<std::string> declaredIn(const std::string& text) {
-  static const std::regex patterns[] = {std::regex(R"(^(?:PLD_FN )?[A-Za-z]\w* (\w+)\()"),
-                                        std::regex(R"(^struct (\w+))"), std::regex(R"(^const \w+ (\w+) =)"),
-                                        std::regex(R"(^(?:bool|float|vec\d) (\w+)(?: =|;))"),
-                                        std::regex(R"(^ *#(?:define|ifdef|ifndef) ((?!GL_)\w+))")};
-  static const std::regex several[] = {std::regex(R"(layout\(location = \d\) out \w+ (\w+);)"),
-                                       std::regex(R"(defined\(((?!GL_)\w+)\))")};
-  std::set<std::string> names;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    for (const std::regex& pattern : patterns)
-      if (std::smatch match; std::regex_search(line, match, pattern)) names.insert(match[1]);
-    for (const std::regex& pattern : several)
-      for (std::sregex_iterator match(line.begin(), line.end(), pattern), end; match != end; ++match)
-        names.insert((*match)[1]);
-  }
-  return names;
-}
-
-std::string storageLayout(int binding) {
-  return "layout(std430, binding = " + std::to_string(binding) + ")";
-}
-
-std::string withoutPreciseBelow400(const std::string& word, int version) {
-  return version < 400 && word == "precise" ? std::string() : word;
-}
-
-bool isPublic(const std::string& word) {
+bool isPublic(std::string_view word) {
   for (const char* one : {"pldWriteCaster", "pldCasterIdentity", "pldShadow", "pldShadowOnOpaque"})
     if (word == one) return true;
   return false;
+}
+
+bool begins(std::string_view word, std::string_view with) {
+  return word.substr(0, with.size()) == with;
+}
+
+// A whole text without its #version line, and for the host's without the line of PLD_FN.
+std::string withoutLines(std::string text, int lines) {
+  std::size_t at = 0;
+  for (int i = 0; i < lines; ++i) at = text.find('\n', at) + 1;
+  text.erase(0, at);
+  return text;
 }
 
 // How the names of one text keep clear of the host's and of each other's.
@@ -78,55 +43,129 @@ struct Names {
   const char* constants;  // of constants, in place of PLD_; empty leaves them
 };
 
-std::string hostText(const std::string& file, const std::vector<std::string>& defines, int version,
+// Of what a text declares itself: what it is called there. False where the word stays.
+bool rename(std::string_view word, const Names& names, std::string& out) {
+  if (begins(word, "PLD_")) {
+    if (!names.constants[0]) return false;
+    out.append(names.constants).append(word.substr(4));
+    return true;
+  }
+  // Of the shared text pldExp() and its like are not the host's to call, but theirs is the name in the layers' seam.
+  if (begins(word, "Pld") || (begins(word, "pld") && (!names.constants[0] || isPublic(word)))) return false;
+  out.append(names.prefix).append(word);
+  return true;
+}
+
+constexpr const char* kEsPrecision =
+    "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+    "precision highp sampler2DArray;\n";
+
+std::string hostText(const std::string& file, std::vector<std::string> defines, const GlslTarget& target,
                      const SeamPlaces& at, const Names& names) {
-  std::string text = shaderSource(file, defines);
-  text.erase(0, text.find('\n') + 1);  // #version
-  text.erase(0, std::string("#define PLD_FN\n").size());
-  const std::set<std::string> own = declaredIn(text);
-  const bool places = version >= 420;
-  const auto unit = [&](int i) {
-    return places ? "layout(binding = " + std::to_string(at.firstUnit + i) + ")" : std::string();
+  if (target.dialect == PLD_DIALECT_ES) defines.emplace_back("LOOKED_UP_LATE");
+  const std::string text = withoutLines(shaderSource(file, defines), 2);
+  const Words own = declaredIn(text);
+  const auto place = [&](std::string_view word) {
+    const int number = word.back() - '0';
+    if (begins(word, "PLD_STORAGE_")) return layoutText(target, "std430", at.firstStorage + number);
+    return target.placesBindings() ? layoutText(target, nullptr, at.firstUnit + number) : std::string();
   };
-  text = withWords(text, [&](const std::string& word) -> std::string {
-    if (word == "PLD_FN") return {};
-    if (word == "PLD_FRAME_LAYOUT")
-      return places ? "layout(std140, binding = " + std::to_string(at.uniformBinding) + ")" : "layout(std140)";
-    if (word.rfind("PLD_STORAGE_", 0) == 0) return storageLayout(at.firstStorage + word.back() - '0');
-    if (word == "PLD_UNIT_0") return unit(0);
-    if (word == "PLD_UNIT_1") return unit(1);
-    if (word == "PLD_UNIT_2") return unit(2);
-    if (word == "PLD_UNIT_3") return unit(3);
-    if (own.count(word) && word.rfind("PLD_", 0) == 0)
-      return names.constants[0] ? names.constants + word.substr(4) : word;
-    // Of the shared text pldExp() and its like are not the host's to call, but theirs is the name in the layers' seam.
-    const bool hosts =
-        word.rfind("Pld", 0) == 0 || (word.rfind("pld", 0) == 0 && (!names.constants[0] || isPublic(word)));
-    if (own.count(word) && !hosts) return names.prefix + word;
-    return withoutPreciseBelow400(word, version);
+  const std::string changed = withWords(text, [&](std::string_view word, std::string& out) {
+    const bool ours = word[0] == 'P' && begins(word, "PLD_");
+    if ((ours && word == "PLD_FN") || isMissing(word, target)) return;
+    if (ours && word == "PLD_FRAME_LAYOUT")
+      out += layoutText(target, "std140", at.uniformBinding);
+    else if (ours && (begins(word, "PLD_STORAGE_") || (begins(word, "PLD_UNIT_") && word.size() == 10)))
+      out += place(word);
+    else if (!own.count(word) || !rename(word, names, out))
+      out += word;
   });
-  return std::string("#ifndef ") + names.guard + "\n#define " + names.guard + "\n" + text + "#endif\n";
+  return std::string("#ifndef ") + names.guard + "\n#define " + names.guard + "\n" +
+         (target.dialect == PLD_DIALECT_ES ? kEsPrecision : "") + changed + "#endif\n";
+}
+
+// The text without `layout(binding = N) ` before samplers, which are told to found(name, N).
+template <class F>
+std::string withoutUnits(const std::string& text, F found) {
+  constexpr std::string_view key = "layout(binding = ", kind = " uniform ";
+  std::string out;
+  std::size_t from = 0;
+  for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
+    const std::size_t close = text.find(')', at), type = close + 1 + kind.size(), name = text.find(' ', type) + 1;
+    if (text.compare(close + 1, kind.size(), kind) != 0) continue;
+    found(text.substr(name, text.find(';', name) - name), std::stoi(text.substr(at + key.size())));
+    out.append(text, from, at - from);
+    from = close + 2;
+  }
+  return out.append(text, from);
+}
+
+// Without the loose uniforms, which begin their lines; samplers have a layout before them.
+std::string withoutLooseUniforms(const std::string& text) {
+  constexpr std::string_view key = "\nuniform ";
+  std::string out;
+  std::size_t from = 0;
+  for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at)) {
+    out.append(text, from, at - from);
+    from = at = text.find('\n', at + 1);
+  }
+  return out.append(text, from);
 }
 
 }  // namespace
 
+std::string layoutText(const GlslTarget& target, const char* packing, int binding) {
+  std::string text = "layout(";
+  if (packing) text += packing;
+  if (!target.placesBindings()) return text + ")";
+  if (packing) text += ", ";
+  if (target.dialect == PLD_DIALECT_VULKAN) text += "set = " + std::to_string(target.set) + ", ";
+  return text + "binding = " + std::to_string(binding) + ")";
+}
+
 OwnText ownText(const std::string& file, const std::vector<std::string>& defines, int version) {
-  static const std::regex bound(R"(layout\(binding = (\d+)\) (uniform sampler2D (\w+);))");
+  GlslTarget target;
+  target.version = version;
   OwnText own;
-  std::string text = shaderSource(file, defines);
-  text.erase(0, text.find('\n') + 1);  // #version
-  for (std::sregex_iterator match(text.begin(), text.end(), bound), end; match != end; ++match)
-    own.samplers.push_back({(*match)[3], std::stoi((*match)[1])});
-  text = std::regex_replace(text, bound, "$2");
-  own.text = "#version " + std::to_string(version) + " core\n" +
-             withWords(text, [&](const std::string& word) { return withoutPreciseBelow400(word, version); });
+  const std::string text =
+      withoutUnits(withoutLines(shaderSource(file, defines), 1), [&](const std::string& name, int unit) {
+        own.samplers.push_back({name, unit});
+      });
+  own.text =
+      "#version " + std::to_string(version) + " core\n" + withWords(text, [&](std::string_view word, std::string& out) {
+        if (!isMissing(word, target)) out += word;
+      });
   return own;
+}
+
+std::string recipeStageText(const std::string& file, const std::vector<std::string>& defines, const GlslTarget& target,
+                            const std::string& block, int storage) {
+  std::string text = withoutLooseUniforms("\n" + withoutLines(shaderSource(file, defines), 1));
+  if (!target.placesBindings()) text = withoutUnits(text, [](const std::string&, int) {});
+  const bool es = target.dialect == PLD_DIALECT_ES, vulkan = target.dialect == PLD_DIALECT_VULKAN;
+  const std::string set = "set = " + std::to_string(target.set) + ", ";
+  return "#version " + std::to_string(target.version) +
+         (es       ? " es\n"
+          : vulkan ? "\n"
+                   : " core\n") +
+         (es ? kEsPrecision : "") + block + withWords(text, [&](std::string_view word, std::string& out) {
+           if (isMissing(word, target)) return;
+           if (word[0] == 'P' && begins(word, "PLD_STORAGE_"))
+             out += layoutText(target, "std430", storage + word.back() - '0');
+           else if (vulkan && word == "gl_VertexID")
+             out += "gl_VertexIndex";
+           else if (vulkan && word == "binding")
+             out.append(set).append(word);
+           else
+             out.append(word);
+         });
 }
 
 std::vector<std::string> storageDefines(int first) {
   std::vector<std::string> defines;
   for (int i = 0; i < kListBlocks; ++i)
-    defines.push_back("PLD_STORAGE_" + std::to_string(i) + " " + storageLayout(first + i));
+    defines.push_back("PLD_STORAGE_" + std::to_string(i) + " layout(std430, binding = " + std::to_string(first + i) +
+                      ")");
   return defines;
 }
 
@@ -143,24 +182,25 @@ const char* casterMark(bool coloured) {
   return coloured ? "pldShadowMetric_coloured" : "pldShadowMetric_grey";
 }
 
-std::string seamText(const Permutation& permutation, pld_stage stage, int version, const SeamPlaces& places) {
+std::string seamText(const Permutation& permutation, pld_stage stage, const GlslTarget& target,
+                     const SeamPlaces& places) {
   std::vector<std::string> defines = seamDefines(permutation, stage);
   defines.push_back("SCALE " + seamMark(permutation, stage));
-  return hostText("gl/seam.glsl", defines, version, places, {"PLD_SEAM", "pld_", ""});
+  return hostText("gl/seam.glsl", defines, target, places, {"PLD_SEAM", "pld_", ""});
 }
 
-std::string casterText(bool coloured, int version, const SeamPlaces& places) {
+std::string casterText(bool coloured, const GlslTarget& target, const SeamPlaces& places) {
   std::vector<std::string> defines{std::string("METRIC ") + casterMark(coloured)};
   if (!coloured) defines.emplace_back("GREY");
-  return hostText("gl/caster_seam.glsl", defines, version, places, {"PLD_CASTER_SEAM", "pld_c_", "PLD_C_"});
+  return hostText("gl/caster_seam.glsl", defines, target, places, {"PLD_CASTER_SEAM", "pld_c_", "PLD_C_"});
 }
 
-std::string shadowText(const ShadowShape& shape, int version, const SeamPlaces& places) {
+std::string shadowText(const ShadowShape& shape, const GlslTarget& target, const SeamPlaces& places) {
   const auto define = [](const char* name, int value) { return std::string(name) + " " + std::to_string(value); };
   return hostText("gl/shadow_seam.glsl",
                   {define("LIGHTS", shape.lights), define("FACES", shape.faces), define("EDGE", shape.edge),
                    define("CHANNELS", shape.channels)},
-                  version, places, {"PLD_SHADOW_SEAM", "pld_s_", "PLD_S_"});
+                  target, places, {"PLD_SHADOW_SEAM", "pld_s_", "PLD_S_"});
 }
 
 }  // namespace pellucid::c

@@ -31,7 +31,7 @@ pld_status HostTexts::seam(pld_stage stage, int version, const char*& text) {
                         version);
   const pld_create_info& info = device_.info;
   std::string& kept = seams_[stage];
-  kept = seamText(device_.permutation, stage, version,
+  kept = seamText(device_.permutation, stage, {PLD_DIALECT_GL, version},
                   {static_cast<int>(info.uniform_binding), static_cast<int>(info.texture_unit),
                    static_cast<int>(info.storage_binding)});
   text = kept.c_str();
@@ -47,8 +47,9 @@ pld_status HostTexts::shadows(pld_shadow_text which, int version, const char*& t
   const pld_shadow_info& maps = casters_.info();
   std::string& kept = shadows_[which];
   kept = which == PLD_SHADOW_TEXT_CASTER
-             ? casterText(maps.coloured != 0, version, {static_cast<int>(device_.info.uniform_binding), 0})
-             : shadowText({maps.lights, maps.faces, edgeOf(maps), channelsOf(maps)}, version,
+             ? casterText(maps.coloured != 0, {PLD_DIALECT_GL, version},
+                          {static_cast<int>(device_.info.uniform_binding), 0})
+             : shadowText({maps.lights, maps.faces, edgeOf(maps), channelsOf(maps)}, {PLD_DIALECT_GL, version},
                           {static_cast<int>(maps.uniform_binding), static_cast<int>(maps.texture_unit)});
   text = kept.c_str();
   return PLD_OK;

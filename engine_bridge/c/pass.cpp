@@ -3,23 +3,16 @@
 #include <algorithm>
 
 #include "engine_bridge/c/frame_checks.h"
+#include "engine_bridge/c/pass_choices.h"
 
 using namespace pellucid::c;
 
 pld_status pld_pass::checkFeatures() {
   const Permutation& p = device.permutation;
-  if (p.published() && p.fronts())
-    return device.fail(PLD_ERROR_UNSUPPORTED,
-                       "pld_create: found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, whose nearest layer it keeps "
-                       "no plane for: expected PLD_TIER_FLOAT, PLD_TIER_HALF or PLD_TIER_EXACT");
-  constexpr const char* noLight =
-      "pld_create: found PLD_FEATURE_LIGHT in PLD_TIER_PUBLISHED, which keeps no plane for light that adds: it is lost";
-  if (p.published() && p.has(PLD_FEATURE_LIGHT)) {
-    if (device.isHostSince(5)) return device.fail(PLD_ERROR_UNSUPPORTED, "%s", noLight);
-    device.say(PLD_LOG_WARNING, noLight);  // as hosts of 0.4 and earlier have it
-  }
-  const std::string conflict = conflictOf(p);
-  return conflict.empty() ? PLD_OK : device.fail(PLD_ERROR_UNSUPPORTED, "pld_create: %s", conflict.c_str());
+  const bool loses = p.losesLight() && !device.isHostSince(5);  // as hosts of 0.4 and earlier have it
+  if (loses) device.say(PLD_LOG_WARNING, ("pld_create: " + lostLight()).c_str());
+  const std::string refusal = refusalOf(p, loses);
+  return refusal.empty() ? PLD_OK : device.fail(PLD_ERROR_UNSUPPORTED, "pld_create: %s", refusal.c_str());
 }
 
 pld_status pld_pass::checkDevice() {
@@ -67,13 +60,8 @@ std::string pld_pass::makeParts() {
 pld_status pld_pass::create(const pld_create_info& info) {
   if (const pld_status status = device.load(info); status != PLD_OK) return status;
   Permutation& p = device.permutation;
-  p.method = info.method;
-  p.tier = info.tier;
-  p.features = info.features;
+  p = permutationOf(info);
   if (!device.isHostSince(4) && p.scatters() && !p.published()) p.features |= PLD_FEATURE_LIGHT;
-  p.weight = info.weight;
-  p.depth = info.depth;
-  p.rows = info.rows;
   if (const pld_status status = checkFeatures(); status != PLD_OK) return status;
   if (const pld_status status = checkDevice(); status != PLD_OK) return status;
   device.reportPendingErrors("pld_create");
@@ -269,19 +257,12 @@ pld_status pld_pass::queryPlane(pld_value what, uint64_t& value) {
 
 pld_status pld_pass::query(pld_value what, uint64_t& value) {
   const Permutation& p = device.permutation;
+  uint64_t bits = 0;
+  for (const Plane& plane : planes_.layers()) bits += static_cast<uint64_t>(plane.spec.bits());
+  if (queryOf(p, bits, planes_.layers().size(), what, value)) return PLD_OK;
   switch (what) {
-    case PLD_VALUE_BITS_PER_PIXEL:
-      value = 0;
-      for (const Plane& plane : planes_.layers()) value += static_cast<uint64_t>(plane.spec.bits());
-      return PLD_OK;
     case PLD_VALUE_BYTES:
       value = planes_.bytes() + low_.bytes() + rims_.bytes() + spread_.bytes() + room_.bytes();
-      return PLD_OK;
-    case PLD_VALUE_PLANES:
-      value = planes_.layers().size();
-      return PLD_OK;
-    case PLD_VALUE_GEOMETRY_PASSES:
-      value = 1u + (p.frontStage() ? 1u : 0u) + (p.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (p.rimsApart() ? 1u : 0u);
       return PLD_OK;
     case PLD_VALUE_NS_BEGIN:
     case PLD_VALUE_NS_DRAWS:

@@ -119,7 +119,15 @@ LayerModel modelOf(const Permutation& p) {
   return model;
 }
 
-std::string conflictOf(const Permutation& p) {
+std::string lostLight() {
+  return "found PLD_FEATURE_LIGHT in PLD_TIER_PUBLISHED, which keeps no plane for light that adds: it is lost";
+}
+
+std::string refusalOf(const Permutation& p, bool maybeLight) {
+  if (p.published() && p.fronts())
+    return "found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, whose nearest layer it keeps no plane for: expected "
+           "PLD_TIER_FLOAT, PLD_TIER_HALF or PLD_TIER_EXACT";
+  if (p.losesLight() && !maybeLight) return lostLight();
   if (p.scatters() && p.method == PLD_METHOD_WEIGHTED)
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
   if (p.outputs() && p.published())
@@ -182,6 +190,7 @@ std::vector<std::string> resolveDefines(const Permutation& p, bool showsThrough)
   std::vector<std::string> defines = readDefines(modelOf(p), showsThrough);
   for (const char* name : {"PART_OF_TEXTURE", "NEAREST_SAMPLERS", "NO_SELF_MODULATION"}) defines.emplace_back(name);
   if (!p.planarDepth()) defines.emplace_back("NO_DEPTH");
+  if (!showsThrough || !p.has(PLD_FEATURE_DIFFUSION)) defines.emplace_back("NO_PYRAMID");
   return defines;
 }
 

@@ -36,6 +36,7 @@ struct Permutation {
   bool rims() const { return has(PLD_FEATURE_RIMS); }
   // From sums of one kind what occlusion hides is taken later; others take rims that are dark already.
   bool rimsInSeam() const { return rims() && (published() || fronts() || sorted()); }
+  bool losesLight() const { return published() && has(PLD_FEATURE_LIGHT); }
   bool outputs() const { return has(PLD_FEATURE_OUTPUTS); }
   bool rimsApart() const { return rims() && !rimsInSeam(); }
   int seamUnits() const { return rimsInSeam() ? 4 : 3; }  // textures that the seam reads
@@ -60,8 +61,11 @@ Focal focalOf(const pld_frame& frame, int pixelsATexel);
 // pld_frame.weight_reference, or what stands for 0. Metres
 float referenceOf(const pld_frame& frame);
 
-// Empty when the parts go together, else what does not: a sentence.
-std::string conflictOf(const Permutation& permutation);
+// Empty when the parts go together, else what does not: a clause.
+//   maybeLight  light that a tier has no plane for may be lost
+std::string refusalOf(const Permutation& permutation, bool maybeLight = false);
+// What is said of Permutation::losesLight().
+std::string lostLight();
 
 std::vector<PlaneSpec> planesOf(const Permutation& permutation);
 

@@ -4,10 +4,15 @@
 #include <cstring>
 #include <new>
 
+#include "engine_bridge/c/frame_numbers.h"
 #include "engine_bridge/c/pass.h"
+#include "engine_bridge/c/pass_choices.h"
 #include "shaders/weights.h"
 
 namespace {
+
+using pellucid::c::kEveryFeature;
+using pellucid::c::nameUnknownChoice;
 
 // One call at a time with a pass, on the thread where its context is current.
 template <class F>
@@ -61,39 +66,18 @@ pld_status checkInfo(const pld_create_info& info) {
     return refuse(info, PLD_ERROR_VERSION, text);
   }
   if (!info.get_proc_address) return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: get_proc_address is null");
-  struct {
-    const char* name;
-    int value, last;
-  } const choices[] = {{"method", info.method, PLD_METHOD_OVER},
-                       {"tier", info.tier, PLD_TIER_EXACT},
-                       {"weight", info.weight, static_cast<int>(pellucid::kDepthWeights.size()) - 1},
-                       {"depth", info.depth, PLD_DEPTH_LINEAR},
-                       {"clip", info.clip, PLD_CLIP_ZERO_TO_ONE},
-                       {"rows", info.rows, PLD_ROWS_DOWN}};
-  for (const auto& choice : choices)
-    if (choice.value < 0 || choice.value > choice.last) {
-      std::snprintf(text, sizeof(text), "pld_create: %s: found %d, expected 0 to %d", choice.name, choice.value,
-                    choice.last);
-      return refuse(info, PLD_ERROR_ARGUMENT, text);
-    }
-  constexpr uint32_t features = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
-                                PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS |
-                                PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS;
+  if (nameUnknownChoice(info, "pld_create", text)) return refuse(info, PLD_ERROR_ARGUMENT, text);
   constexpr uint32_t flags = PLD_FLAG_HOST_RESTORES | PLD_FLAG_TIMERS | PLD_FLAG_DEBUG_GROUPS | PLD_FLAG_DEBUG_VIEWS |
                              PLD_FLAG_VALIDATE | PLD_FLAG_TRUST_TEXTURES;
-  if ((info.features & ~features) || (info.flags & ~flags))
+  if ((info.features & ~kEveryFeature) || (info.flags & ~flags))
     return refuse(info, PLD_ERROR_ARGUMENT, "pld_create: features or flags hold a bit that this version does not have");
   return PLD_OK;
 }
 
-// Of 0.1 it ended before occlusion_texture, of 0.5 before weight_reference.
 pld_status wholeFrame(pld_pass* pass, const char* call, const pld_frame& frame, pld_frame& whole) {
-  if (frame.struct_size != offsetof(pld_frame, occlusion_texture) &&
-      frame.struct_size != offsetof(pld_frame, weight_reference) && frame.struct_size != sizeof(pld_frame))
-    return pass->device.fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call,
-                             frame.struct_size, sizeof(pld_frame));
-  std::memcpy(&whole, &frame, frame.struct_size);
-  return PLD_OK;
+  if (pellucid::c::takeWhole(frame, whole)) return PLD_OK;
+  return pass->device.fail(PLD_ERROR_VERSION, "%s: frame.struct_size: found %u, expected %zu", call, frame.struct_size,
+                           sizeof(pld_frame));
 }
 
 // Of 0.3 it ended before shadow_face.

@@ -1,9 +1,6 @@
 #include "engine_bridge/c/spread_levels.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include "shaders/spread_pyramid_text.h"
 
 namespace pellucid::c {
 
@@ -27,23 +24,8 @@ void SpreadLevels::release() {
   bytes_ = 0;
 }
 
-// Where the levels lie in their atlas.
 void SpreadLevels::layOut(int width, int height) {
-  constexpr int margins = 2 * pellucid::shading::PLD_SPREAD_MARGIN;
-  const float diagonal = std::hypot(static_cast<float>(width), static_cast<float>(height));
-  count_ = device_.permutation.has(PLD_FEATURE_DIFFUSION) ? pellucid::shading::spreadLevel(diagonal) : 0;
-  for (auto& level : levels_) level[0] = level[1] = 1, level[2] = level[3] = 0;
-  int wide = 1, rows = 0;
-  for (int k = 1; k <= count_; ++k) {
-    GLint* level = levels_[k];
-    level[0] = ((width + (1 << k) - 1) >> k) + margins;
-    level[1] = ((height + (1 << k) - 1) >> k) + margins;
-    level[2] = rows;
-    wide = std::max(wide, level[0]);
-    rows += level[1];
-  }
-  atlasWidth_ = wide;
-  atlasHeight_ = std::max(rows, 1);
+  if (device_.permutation.has(PLD_FEATURE_DIFFUSION)) layout_ = spreadLayout(width, height, 1);
 }
 
 bool SpreadLevels::make(int width, int height) {
@@ -51,7 +33,7 @@ bool SpreadLevels::make(int width, int height) {
   layOut(width, height);
   GLenum all[kPlanes];
   for (GLuint i = 0; i < kPlanes; ++i) {
-    planes_[i] = device_.makeTexture(GL_RGBA32F, atlasWidth_, atlasHeight_, 128, bytes_);
+    planes_[i] = device_.makeTexture(GL_RGBA32F, layout_.width, layout_.height, 128, bytes_);
     all[i] = GL_COLOR_ATTACHMENT0 + i;
     device_.attach(frame_, all[i], planes_[i]);
   }
@@ -64,11 +46,11 @@ void SpreadLevels::draw(int width, int height) {
   layOut(width, height);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame_);
   device_.use(program_);
-  gl.Uniform4iv(program_.place(gl, "spreadLevels"), kLevels, &levels_[0][0]);
+  gl.Uniform4iv(program_.place(gl, "spreadLevels"), SpreadLayout::kLevels, &layout_.levels[0][0]);
   gl.Uniform2i(program_.place(gl, "pictureSize"), width, height);
   const GLint level = program_.place(gl, "level");
-  for (int k = 1; k <= count_; ++k) {
-    setViewportTo(gl, 0, levels_[k][2], levels_[k][0], levels_[k][1]);
+  for (int k = 1; k <= layout_.count; ++k) {
+    setViewportTo(gl, 0, layout_.levels[k][2], layout_.levels[k][0], layout_.levels[k][1]);
     gl.Uniform1i(level, k);
     device_.drawEverywhere();
     gl.TextureBarrier();
@@ -81,9 +63,9 @@ void SpreadLevels::bind() const {
 
 void SpreadLevels::setUniforms(const Program& program, int width, int height) const {
   const GlFunctions& gl = device_.gl;
-  gl.Uniform3i(program.place(gl, "lookup"), 0, 0, count_);
+  gl.Uniform3i(program.place(gl, "lookup"), 0, 0, layout_.count);
   gl.Uniform1f(program.place(gl, "largestSpread"), std::hypot(static_cast<float>(width), static_cast<float>(height)));
-  if (count_ > 0) gl.Uniform4iv(program.place(gl, "spreadLevels"), kLevels, &levels_[0][0]);
+  if (layout_.count > 0) gl.Uniform4iv(program.place(gl, "spreadLevels"), SpreadLayout::kLevels, &layout_.levels[0][0]);
 }
 
 }  // namespace pellucid::c

@@ -1,6 +1,7 @@
 // The pyramid by which diffusion spreads the background: one atlas whose levels are drawn one from another.
 #pragma once
 #include "engine_bridge/c/pass_device.h"
+#include "engine_bridge/c/spread_layout.h"
 
 namespace pellucid::c {
 
@@ -14,7 +15,7 @@ class SpreadLevels {
   bool make(int width, int height);  // nothing without diffusion; false where the device cannot draw to it
   void release();
 
-  bool exist() const { return count_ > 0; }
+  bool exist() const { return layout_.count > 0; }
   // From the sums and the background that are bound, for a picture of this size. A texel of one level reads those of
   // the one below it, of the same textures: a barrier lies between the draws.
   void draw(int width, int height);
@@ -25,14 +26,13 @@ class SpreadLevels {
   uint64_t bytes() const { return bytes_; }
 
  private:
-  static constexpr int kLevels = 25, kPlanes = 5;
+  static constexpr int kPlanes = 5;
   void layOut(int width, int height);
 
   Device& device_;
   Program program_;
   GLuint frame_ = 0, planes_[kPlanes] = {};
-  GLint levels_[kLevels][4] = {};
-  int count_ = 0, atlasWidth_ = 0, atlasHeight_ = 0;
+  SpreadLayout layout_;
   uint64_t bytes_ = 0;
 };
 

@@ -25,4 +25,25 @@ int listBlocks(const Permutation& p) {
   return p.has(PLD_FEATURE_DISPERSION) ? 5 : offsets ? 4 : 3;
 }
 
+ListSizes listSizes(int width, int height, uint64_t fragments) {
+  const uint64_t heads = 1 + static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+  return {4 * heads, 4 * (heads + fragments), 16 * fragments};
+}
+
+bool queryOf(const Permutation& p, uint64_t bits, uint64_t planes, pld_value what, uint64_t& value) {
+  switch (what) {
+    case PLD_VALUE_BITS_PER_PIXEL:
+      value = bits;
+      return true;
+    case PLD_VALUE_PLANES:
+      value = planes;
+      return true;
+    case PLD_VALUE_GEOMETRY_PASSES:
+      value = 1u + (p.frontStage() ? 1u : 0u) + (p.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (p.rimsApart() ? 1u : 0u);
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace pellucid::c

@@ -15,5 +15,15 @@ uint32_t stagesOf(const Permutation& permutation);
 Permutation lowPermutation(const Permutation& permutation);
 // How many storage blocks the lists of the exact tier take; 0 in other tiers.
 int listBlocks(const Permutation& permutation);
+// Bytes of the lists of the exact tier, for pictures up to a size with room for so many fragments.
+struct ListSizes {
+  uint64_t heads, links, record;  // emptied before a stage, which begin the links; all of them; each other block
+};
+ListSizes listSizes(int width, int height, uint64_t fragments);
+constexpr uint64_t kMostFragments = uint64_t{1} << 31;  // as far as shaders/gl/exact_output.glsl counts
+
+// PLD_VALUE_BITS_PER_PIXEL, _PLANES and _GEOMETRY_PASSES; false for other values.
+//   bits, planes  of the layers
+bool queryOf(const Permutation& permutation, uint64_t bits, uint64_t planes, pld_value what, uint64_t& value);
 
 }  // namespace pellucid::c

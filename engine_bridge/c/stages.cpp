@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine_bridge/c/recipe_numbers.h"
 #include "shaders/plane_defines.h"
 
 namespace pellucid::c {
@@ -9,14 +10,13 @@ namespace {
 
 constexpr const char* kNames[] = {"pellucid solids", "pellucid front", "pellucid layers", "pellucid rims",
                                   "pellucid low resolution"};
-constexpr std::size_t kFrameFloats = 20;  // of the block of shaders/gl/seam.glsl
 
 }  // namespace
 
 void Stages::create() {
   device_.gl.GenBuffers(1, &uniforms_);
   device_.gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_);
-  device_.gl.BufferData(GL_UNIFORM_BUFFER, kFrameFloats * sizeof(GLfloat), nullptr, GL_DYNAMIC_DRAW);
+  device_.gl.BufferData(GL_UNIFORM_BUFFER, kSeamFloats * sizeof(GLfloat), nullptr, GL_DYNAMIC_DRAW);
 }
 
 std::string Stages::build() {
@@ -73,24 +73,8 @@ Units Stages::unitsOf(pld_stage stage) const {
 }
 
 void Stages::setFrame(const pld_frame& frame, int width, int pixelsATexel) const {
-  const Focal focal = focalOf(frame, pixelsATexel);
-  const GLfloat block[kFrameFloats] = {frame.metres_per_unit,
-                                       frame.pre_exposure,
-                                       isOrthographic(frame.projection) ? 1.0f : 0.0f,
-                                       static_cast<float>(frame.occlusion),
-                                       frame.weight_near,
-                                       frame.weight_far,
-                                       frame.weight_exponent,
-                                       static_cast<float>(width),
-                                       static_cast<float>(frame.refract),
-                                       frame.refract_distance,
-                                       focal.x,
-                                       focal.y,
-                                       frame.diffusion_k0,
-                                       frame.diffusion_k1,
-                                       static_cast<float>(frame.width),
-                                       static_cast<float>(frame.height),
-                                       referenceOf(frame)};
+  float block[kSeamFloats];
+  fillSeam({device_.permutation, frame, width, 1}, pixelsATexel, block);
   device_.gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_);
   device_.gl.BufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(block), block);
 }

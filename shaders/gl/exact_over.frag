@@ -6,10 +6,10 @@ PLANE_OUTPUTS
 
 uniform int rowLength;
 #ifdef SOLIDS
-uniform sampler2D solidHere;  // rgb, planar z
+layout(binding = 6) uniform sampler2D solidHere;  // rgb, planar z
 #endif
 
-const float kNowhere = intBitsToFloat(0x7f800000);
+#define kNowhere intBitsToFloat(0x7f800000)  // Vulkan takes no call for a constant
 
 uint after(uint link) { return pldLinks[linkOf(link - 1u)]; }
 void setAfter(uint link, uint next) { pldLinks[linkOf(link - 1u)] = next; }

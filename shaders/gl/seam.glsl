@@ -75,7 +75,13 @@ vec4 seamTexel(sampler2D plane) {
   return textureLod(plane, gl_FragCoord.xy / vec2(textureSize(plane, 0)), 0.0f);
 }
 
-// Looked up before main(): a CPU then waits for memory beside the host's shading and not after it.
+// Looked up before main(): a CPU then waits for memory beside the host's shading and not after it. Not where a global
+// may have no such value (LOOKED_UP_LATE).
+#ifdef LOOKED_UP_LATE
+#define seamOpaqueZ seamTexel(pldOpaqueZ).r
+#define seamSolidZ seamTexel(pldSolid).a
+#define seamFrontZ seamTexel(pldFrontZ).r
+#else
 #if defined(SCATTER) || defined(DEPTH_IN_SHADER)
 float seamOpaqueZ = seamTexel(pldOpaqueZ).r;
 #endif
@@ -84,6 +90,7 @@ float seamSolidZ = seamTexel(pldSolid).a;
 #endif
 #ifdef FRONT_TAIL
 float seamFrontZ = seamTexel(pldFrontZ).r;
+#endif
 #endif
 
 // One shaded transparent surface under this fragment.

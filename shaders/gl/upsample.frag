@@ -25,7 +25,7 @@ uniform float factor;
 // Of the texels around, by their shares. Macros are one line each: below GLSL 4.20 none may go on.
 #define AROUND(plane, texels, around, scale) vec4 around = vec4(0.0f);
 SCATTER_PLANES(AROUND)
-float refractionZAround = 0.0f, diffuseZAround = intBitsToFloat(0x7f800000);
+float refractionZAround = 0.0f, diffuseZAround = 3.4e38f;  // then +inf: a global of ES takes constants alone
 
 vec4 withShare(vec4 around, float share, vec4 texel) {
   precise vec4 sum = around + share * texel;
@@ -72,6 +72,9 @@ LowSums withTexel(LowSums sums, ivec2 at, vec4 depths, float share, float opaque
 }
 
 void main() {
+#ifdef SCATTER
+  diffuseZAround = intBitsToFloat(0x7f800000);
+#endif
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float opaque = texelFetch(opaqueZ, pixel, 0).r;
 #ifndef NO_SOLIDS

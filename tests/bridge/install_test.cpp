@@ -28,12 +28,13 @@ TEST(BridgeInstall, TheLibraryShowsItsInterfaceAndNothingElse) {
   std::set<std::string> shown, declared;
   std::istringstream lines(listed.out);
   for (std::string line; std::getline(lines, line);) shown.insert(line.substr(0, line.find(' ')));
-  const std::string header = slurp(folder + "/prefix/include/pellucid/pellucid.h");
+  const std::string header =
+      slurp(folder + "/prefix/include/pellucid/pellucid.h") + slurp(folder + "/prefix/include/pellucid/recipe.h");
   const std::regex function(R"(PLD_API [^;(]*?(pld_\w+)\()");
   for (std::sregex_iterator i(header.begin(), header.end(), function), end; i != end; ++i) declared.insert((*i)[1]);
   std::printf("libpellucid_c.so: %zu symbols shown, %zu declared\n", shown.size(), declared.size());
   EXPECT_EQ(shown, declared);
-  EXPECT_EQ(declared.size(), 18u);
+  EXPECT_EQ(declared.size(), 32u);
   const Ended needed = shell("objdump -p '" + folder + "/prefix/lib/libpellucid_c.so' | grep NEEDED", folder);
   for (const char* library : {"libGL", "libEGL", "libepoxy", "libOpen", "libfmt"})
     EXPECT_EQ(needed.out.find(library), std::string::npos) << needed.out;
@@ -84,7 +85,8 @@ TEST(BridgeInstall, ComponentsStandAlone) {
       {"c", {"lib/libpellucid_c.so.0"}},
       {"dev",
        {"lib/libpellucid_c.so", "include/pellucid/pellucid.h", "include/pellucid/pellucid.hpp",
-        "lib/cmake/pellucid/pellucidConfig.cmake", "lib/cmake/pellucid/pellucid-c.cmake", "lib/pkgconfig/pellucid.pc"}},
+        "include/pellucid/recipe.h", "lib/cmake/pellucid/pellucidConfig.cmake", "lib/cmake/pellucid/pellucid-c.cmake",
+        "lib/pkgconfig/pellucid.pc"}},
       {"docs", {"share/doc/pellucid/LICENSE", "share/doc/pellucid/INTEGRATION.md"}}};
   std::uintmax_t bytes = 0;
   for (const auto& [component, files] : components) {

@@ -37,6 +37,8 @@ struct Library {
 const Library kLibraries[] = {{"epoxy/", {"engine_bridge/gl", "samples/engine", "samples/stained"}},
                               {"EGL/", {"engine_bridge/gl", "samples/osg"}},
                               {"GL/", {"engine_bridge/gl", "engine_bridge/c", "samples/vtk"}},
+                              {"vulkan/", {"samples/vulkan"}},
+                              {"glslang/", {"samples/vulkan"}},
                               {"embree3/", {"engine_bridge/embree"}},
                               {"openvdb/", {"engine_bridge/scene/parts"}},
                               {"OpenImageIO/", {"gbuffer/parts", "composite/study/parts", "samples"}},

@@ -1,0 +1,39 @@
+#include "tests/support/recipes.h"
+
+namespace pellucid::test {
+
+RecipePointer makeRecipe(pld_recipe_info info, std::string* why) {
+  char message[400] = {};
+  info.message = message;
+  info.message_size = sizeof(message);
+  pld_recipe* made = nullptr;
+  const pld_status status = pld_recipe_create(&info, &made);
+  if (why) *why = std::string(pld_status_name(status)) + ": " + message;
+  return RecipePointer(made);
+}
+
+int forEachRecipe(const pld_recipe_info& like,
+                  const std::function<void(const pld_recipe_info& info, const pld_recipe& recipe)>& found) {
+  int count = 0;
+  for (int method = PLD_METHOD_PHENOMENOLOGICAL; method <= PLD_METHOD_OVER; ++method)
+    for (int tier = PLD_TIER_FLOAT; tier <= PLD_TIER_EXACT; ++tier)
+      for (uint32_t features = 0; features < 2u * PLD_FEATURE_OUTPUTS; ++features) {
+        pld_recipe_info info = like;
+        info.method = static_cast<pld_method>(method);
+        info.tier = static_cast<pld_tier>(tier);
+        info.features = features;
+        info.depth = PLD_DEPTH_REVERSED;
+        const RecipePointer recipe = makeRecipe(info);
+        if (!recipe) continue;
+        found(info, *recipe);
+        ++count;
+      }
+  return count;
+}
+
+std::string nameOf(const pld_recipe_info& info) {
+  return "method " + std::to_string(info.method) + ", tier " + std::to_string(info.tier) + ", features " +
+         std::to_string(info.features);
+}
+
+}  // namespace pellucid::test
