@@ -72,9 +72,15 @@ struct Reader {
                       evidence.least, evidence.most, file.metresPerUnit));
     for (const DepthMeaning other : DepthEvidence::kReadings)
       if (other != asked.meaning && asked.meaning <= DepthMeaning::inverse && speaksFor(evidence, other, asked.meaning))
-        note(fmt::format("is read as {}, but {}: --depth-kind {}?", depthKindWords(asked),
-                         evidenceText(evidence, other, asked.meaning), depthKindText({other})));
+        note(fmt::format("is read as {}, but {}: --depth-kind {}?{}", depthKindWords(asked),
+                         evidenceText(evidence, other, asked.meaning), depthKindText({other}), unlessParallel(other)));
     return asked;
+  }
+  // Planar depth of an orthographic camera looks like 1/z of another one.
+  std::string unlessParallel(DepthMeaning suggested) const {
+    return !camera && suggested == DepthMeaning::inverse
+               ? " Not if its camera, which is not known here, is orthographic"
+               : "";
   }
   DepthKind byPlanes(const DepthKind& asked) const {
     const std::optional<DepthMeaning> meaning = spokenFor(evidence, asked);

@@ -32,6 +32,11 @@ std::size_t placeOf(DepthMeaning meaning) {
   return static_cast<std::size_t>(found - std::begin(DepthEvidence::kReadings));
 }
 
+// Along parallel rays the distance to a point is its planar depth.
+bool sameReading(const DepthEvidence& evidence, DepthMeaning a, DepthMeaning b) {
+  return a == b || (evidence.parallel && a != DepthMeaning::inverse && b != DepthMeaning::inverse);
+}
+
 struct Patches {
   const Image<float>& values;
   const ExrPart& part;
@@ -39,9 +44,10 @@ struct Patches {
   double tolerance;
   DepthEvidence evidence;
 
-  // What is linear on a plane under this reading.
+  // What is linear on a plane under this reading. Seen in perspective that is 1/z; along parallel rays z itself.
   double linear(Reading reading, int x, int y) const {
     const auto value = static_cast<double>(values.at(x, y));
+    if (evidence.parallel) return reading == asInverse ? 1.0 / value : value;
     if (reading == asInverse) return value;
     const double length =
         reading == asRay ? rayOverPlanar(*camera, part.display, part.data.x0 + x + 0.5, part.data.y0 + y + 0.5) : 1.0;
@@ -99,6 +105,7 @@ DepthEvidence depthEvidence(const ExrPart& part, const ExrChannel& depth, const 
   Image<float> values(width, height);
   visitPixels(depth, part.data, part.data, [&](int x, int y, float value) { values.at(x, y) = value; });
   Patches patches{values, part, camera, toleranceOf(part, depth), {}};
+  patches.evidence.parallel = camera && camera->orthographic;
   measureRange(values, patches.evidence);
   const int longer = std::max(width, height), every = std::max(1, longer / kAcross);
   // Short ones find small planes; long ones bend enough to be told apart.
@@ -121,7 +128,7 @@ std::optional<DepthMeaning> spokenFor(const DepthEvidence& evidence, const Depth
     if (!kind.mayBe(meaning)) continue;
     const bool all =
         std::all_of(std::begin(DepthEvidence::kReadings), std::end(DepthEvidence::kReadings), [&](DepthMeaning other) {
-          return other == meaning || !kind.mayBe(other) || speaksFor(evidence, meaning, other);
+          return !kind.mayBe(other) || sameReading(evidence, meaning, other) || speaksFor(evidence, meaning, other);
         });
     if (all) return meaning;
   }

@@ -103,6 +103,25 @@ TEST_F(DepthKinds, EvidenceAgainstAReadingIsSaid) {
   EXPECT_LT(worst(negative), 1e-6);
 }
 
+// What is 1/z on a plane in perspective is z itself along parallel rays.
+TEST_F(DepthKinds, EvidenceOfAnOrthographicCamera) {
+  room_ = Room::orthographic();
+  const auto planar = [](double z, double) { return z; };
+  const auto inverse = [](double z, double) { return 50 / z; };
+  const OpaqueFile file = read(planar);
+  EXPECT_FALSE(noted(file, "--depth-kind")) << file.notes[0];
+  EXPECT_LT(worst(file), 1e-6);
+  EXPECT_TRUE(noted(read(inverse), "--depth-kind inverse?"));
+  ReadOptions open;
+  open.depthKind = "auto";
+  const OpaqueFile settled = read(planar, open);
+  EXPECT_TRUE(noted(settled, "fit no other reading"));
+  EXPECT_LT(worst(settled), 1e-6);
+  EXPECT_EQ(read(inverse, open).choice.depthKind, "inverse");
+  // Without its camera nobody can know.
+  EXPECT_TRUE(noted(read(planar, {}, false), "--depth-kind inverse? Not if its camera"));
+}
+
 TEST_F(DepthKinds, EnvironmentMapsAreNoPictures) {
   Part part = room_.part(true);
   part.planes.push_back(floatPlane("Z", room_.depth([](double z, double) { return z; })));

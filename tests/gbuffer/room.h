@@ -1,6 +1,7 @@
 // A room as a renderer sees it: a floor, a back wall and a slanted board, planar depth in closed form, and its camera
 // as EXR states it.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -32,6 +33,20 @@ struct Room {
         z.push_back(nearest);
         ray.push_back(std::sqrt(1 + a * a + b * b));
       }
+  }
+  // A slanted floor and a slanted board as an orthographic camera sees them: planar depth is linear on each, and rays
+  // are as long.
+  static Room orthographic() {
+    Room room;
+    room.camera.orthographic = true;
+    room.camera.focal = {0.25, 0.25 * kWidth / kHeight};  // eight metres wide
+    for (std::size_t i = 0; i < room.z.size(); ++i) {
+      const double a = ((static_cast<double>(i % kWidth) + 0.5) / kWidth * 2 - 1) / room.camera.focal.x;
+      const double b = (1 - (static_cast<double>(i / kWidth) + 0.5) / kHeight * 2) / room.camera.focal.y;
+      room.z[i] = std::min(6 + 0.75 * b, 5.5 - 0.75 * a - 0.25 * b);
+      room.ray[i] = 1;
+    }
+    return room;
   }
   template <class F>
   std::vector<float> depth(F of) const {

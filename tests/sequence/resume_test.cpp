@@ -15,53 +15,65 @@ namespace {
 using namespace test;
 namespace fs = std::filesystem;
 
+const std::vector<int> kFrames{1001, 1002, 1003, 1004};
+
 class Resume : public ShotFolder {
  protected:
   std::vector<std::string> jobInto(const std::string& output, int jobs) const {
-    return {"composite", "shot.####.exr", "glass.glb",       "-o",     output,
-            "--frames",  "1001-1006",     "--skip-existing", "--jobs", std::to_string(jobs)};
+    return {"composite", "shot.####.exr",   "glass.glb", "-o", output,   "--frames",
+            "1001-1004", "--skip-existing", "--aa",      "1",  "--jobs", std::to_string(jobs)};
+  }
+  static std::string nameOf(const std::string& shot, int frame) { return shot + "." + std::to_string(frame) + ".exr"; }
+  // How many frames of `out` are there. Each has to have the bytes of the same frame of that shot.
+  int framesLikeThoseOf(const std::string& shot) const {
+    int found = 0;
+    for (const int frame : kFrames) {
+      if (!there(nameOf("out", frame))) continue;
+      ++found;
+      EXPECT_TRUE(bytes(nameOf("out", frame)) == bytes(nameOf(shot, frame))) << frame;
+    }
+    return found;
   }
 };
 
-// PELLUCID_KILLS says how often; a few times tell of every stage of a frame sooner or later.
-TEST_F(Resume, KilledAtAnyMomentTheFramesAreThoseOfAnUndisturbedRun) {
-  makeShot({1001, 1002, 1003, 1004, 1005, 1006}, "bottles");
+// Every run goes on where the one before it was killed, until all frames are there; then it starts over. PELLUCID_KILLS
+// says how many runs must have been killed in the end.
+TEST_F(Resume, KilledFiftyTimesTheFramesAreThoseOfAnUndisturbedRun) {
+  makeShot(kFrames, "bars", "45");
   const Ended whole = run(jobInto("whole.####.exr", 1));
   ASSERT_EQ(whole.code, 0) << whole.err;
   const char* often = std::getenv("PELLUCID_KILLS");
-  const int kills = often ? std::atoi(often) : 4;
+  const int wanted = often ? std::atoi(often) : 50;
   const int longest = std::max(static_cast<int>(1e3 * whole.seconds), 1);
   std::uint32_t random = 20231;
-  int unfinished = 0;
-  for (int i = 0; i < kills; ++i) {
-    for (int frame = 1001; frame <= 1006; ++frame) fs::remove(folder + "/out." + std::to_string(frame) + ".exr");
+  int kills = 0, shots = 0, resumed = 0;
+  for (int i = 0; kills < wanted; ++i) {
+    ASSERT_LT(i, 10 * wanted) << "hardly a run was killed";
     random = random * 1664525u + 1013904223u;
     RunOptions killed = options;
     killed.interruptAfterMs = static_cast<int>(random >> 8) % longest;
-    killed.signal = i % 2 ? SIGKILL : SIGTERM;
-    const std::vector<std::string> job = jobInto("out.####.exr", 1 + i % 2);
-    const int code = runProgram(job, killed).code;
-    EXPECT_TRUE(code == 0 || code == 128 + killed.signal) << code;
-    int found = 0;
-    for (int frame = 1001; frame <= 1006; ++frame) {
-      const std::string name = "." + std::to_string(frame) + ".exr";
-      if (!there("out" + name)) continue;
-      ++found;
-      EXPECT_TRUE(bytes("out" + name) == bytes("whole" + name)) << name << " after " << killed.interruptAfterMs;
-    }
-    if (found < 6) ++unfinished;
-    ASSERT_EQ(run(job).code, 0);
-    for (int frame = 1001; frame <= 1006; ++frame) {
-      const std::string name = "." + std::to_string(frame) + ".exr";
-      EXPECT_TRUE(bytes("out" + name) == bytes("whole" + name)) << name << " after " << killed.interruptAfterMs;
-    }
+    killed.signal = i % 4 < 2 ? SIGTERM : SIGKILL;
+    const int before = framesLikeThoseOf("whole");
+    const Ended ended = runProgram(jobInto("out.####.exr", 1 + i % 2), killed);
+    ASSERT_TRUE(ended.code == 0 || ended.code == 128 + killed.signal) << ended.code << ": " << ended.err;
+    kills += ended.code != 0;
+    const int after = framesLikeThoseOf("whole");
+    EXPECT_GE(after, before) << "a frame that was whole is gone";
+    resumed += before > 0 && after > before;
+    if (ended.code != 0) continue;
+    ASSERT_EQ(after, static_cast<int>(kFrames.size())) << "a run that ended well has left frames out";
+    ++shots;
+    for (const int frame : kFrames) fs::remove(folder + "/" + nameOf("out", frame));
   }
-  std::printf("%d of %d runs were killed before their end\n", unfinished, kills);
-  EXPECT_GT(unfinished, 0);
+  std::printf(
+      "[ figure ] %d runs killed within %d ms; %d shots finished, %d runs added frames to those of a killed one\n",
+      kills, longest, shots, resumed);
+  EXPECT_GT(shots, 0);
+  EXPECT_GT(resumed, 0);
 }
 
 TEST_F(Resume, TwoRunsOnOneFolderDoNoHarm) {
-  makeShot({1001, 1002, 1003, 1004, 1005, 1006});
+  makeShot(kFrames);
   ASSERT_EQ(run(jobInto("whole.####.exr", 1)).code, 0);
   Ended first;
   std::thread beside([&] { first = run(jobInto("out.####.exr", 1)); });
@@ -69,10 +81,7 @@ TEST_F(Resume, TwoRunsOnOneFolderDoNoHarm) {
   beside.join();
   EXPECT_EQ(first.code, 0) << first.err;
   EXPECT_EQ(second.code, 0) << second.err;
-  for (int frame = 1001; frame <= 1006; ++frame) {
-    const std::string name = "." + std::to_string(frame) + ".exr";
-    EXPECT_TRUE(bytes("out" + name) == bytes("whole" + name)) << name;
-  }
+  EXPECT_EQ(framesLikeThoseOf("whole"), static_cast<int>(kFrames.size()));
   EXPECT_TRUE(debris().empty());
 }
 
