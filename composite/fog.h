@@ -20,8 +20,12 @@ void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, OitPlanes
 void addFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const HeldOutRow& row, OitPlanes& planes,
             PublishedClamps* clamps = nullptr);
 
+// Only how the fog spreads what lies behind it, into sums that hold the layers' already.
+void addFogScattering(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, OitPlanes& planes);
+
 // The same for lists: what lies between two fragments that follow one another in depth, composited front to back, is
-// one more fragment. Sorted compositing of the result is the ordered march; the order of `lists` does not matter.
+// one more fragment. Sorted compositing of the result is the ordered march; the order of `lists` does not matter. Fog
+// that diffuses does so in one of them, as all of it.
 //   deep  a deep picture, of gbuffer's window, whose samples cut the fog too; null for a flat one
 FragmentLists withFog(const Fog& fog, const GBuffer& gbuffer, glm::dvec2 sample, const FragmentLists& lists,
                       const DeepOpaque* deep = nullptr);
@@ -41,8 +45,9 @@ class MarchedFog {
 
  private:
   struct Step {
-    glm::vec3 source;  // radiance scattered towards the eye, per opacity
-    float depth, z;    // optical depth; planar metres
+    glm::vec3 source;   // radiance scattered towards the eye, per opacity
+    glm::vec3 emitted;  // radiance of its own
+    float depth, z;     // optical depth; planar metres
   };
   int order_;
   std::vector<std::vector<Step>> steps_;

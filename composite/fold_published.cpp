@@ -35,13 +35,13 @@ PublishedPixel pixelOf(const OitPlanes& planes, int x, int y) {
 
 }  // namespace
 
-shading::PublishedTargets publishedLayer(const shading::OitSums& sums) {
-  shading::Scatter still;
-  still.offset = glm::vec2(0.0f);
-  still.variance = 0.0f;
+shading::PublishedTargets publishedLayer(const shading::OitSums& sums, float variance) {
+  shading::Scatter straight;
+  straight.offset = glm::vec2(0.0f);
+  straight.variance = variance;
   const glm::vec3 opacity = shading::netOpacityOf(sums.depth, shading::transmittanceOf(sums.depth));
   // What only adds light has no place in these targets.
-  return shading::publishedTargets(sums.numerator, shading::meanOf(sums.denominator), opacity, still);
+  return shading::publishedTargets(sums.numerator, shading::meanOf(sums.denominator), opacity, straight);
 }
 
 void blendPublished(const shading::PublishedTargets& layer, OitPlanes& planes, int x, int y, PublishedClamps& clamps) {

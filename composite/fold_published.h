@@ -10,8 +10,9 @@ namespace pellucid {
 void foldPublished(const FragmentLists& lists, const shading::WeightSettings& weight, OitPlanes& planes,
                    PublishedClamps& clamps);
 
-// Sums that came about elsewhere as one layer of these targets, which neither bends nor spreads.
-shading::PublishedTargets publishedLayer(const shading::OitSums& sums);
+// Sums that came about elsewhere as one layer of these targets, which does not bend.
+//   variance  by which it spreads, float pixels^2
+shading::PublishedTargets publishedLayer(const shading::OitSums& sums, float variance = 0.0f);
 // Blends one more layer into a pixel of such planes, whatever else it holds: fog, or what was drawn at low resolution.
 void blendPublished(const shading::PublishedTargets& layer, OitPlanes& planes, int x, int y, PublishedClamps& clamps);
 

@@ -27,7 +27,9 @@ bool inOrder(const Box& box) {
 Fog placeFog(const MediumSettings& settings, const Camera& camera, const AmbientLight& ambient,
              std::vector<shading::PunctualLight> lights) {
   if (!(settings.density >= 0.0) || !(settings.height >= 0.0) || !(std::abs(settings.g) <= 0.98) ||
-      settings.steps < 1 || !(settings.farthest > 0.0) || (settings.box && !inOrder(*settings.box)))
+      settings.steps < 1 || !(settings.collimation >= 0.0 && settings.collimation <= 1.0) ||
+      !(settings.farthest > 0.0) || (settings.box && !inOrder(*settings.box)) ||
+      (settings.emission != glm::dvec3(0.0) && !(settings.density > 0.0)))
     throw std::logic_error("placeFog: a setting is out of its range");
   const glm::dmat3 turn(camera.viewFromWorld);
   const glm::dmat4 worldFromView = glm::inverse(camera.viewFromWorld);
@@ -39,7 +41,8 @@ Fog placeFog(const MediumSettings& settings, const Camera& camera, const Ambient
   medium.extinction = {static_cast<float>(settings.density),
                        settings.height > 0.0 && !settings.grid ? static_cast<float>(1.0 / settings.height) : 0.0f,
                        bounded ? 1.0f : 0.0f, settings.grid ? 1.0f : 0.0f};
-  medium.march = {static_cast<float>(settings.farthest), static_cast<float>(settings.steps), 0.0f, 0.0f};
+  medium.march = {static_cast<float>(settings.farthest), static_cast<float>(settings.steps),
+                  static_cast<float>(1.0 - settings.collimation), 0.0f};
   const glm::dvec3 eye(worldFromView[3]);
   medium.up = glm::vec4(glm::vec3(turn * glm::dvec3(0.0, 1.0, 0.0)), static_cast<float>(eye.y - settings.base));
   medium.ambient = glm::vec4(ambient.mean, 0.0f);
@@ -49,6 +52,8 @@ Fog placeFog(const MediumSettings& settings, const Camera& camera, const Ambient
                          : settings.box ? boxFromWorld(*settings.box)
                                         : glm::dmat4(1.0);
   medium.boxFromView = glm::mat4(box * worldFromView);
+  const glm::dvec3 glow = settings.density > 0.0 ? settings.emission / settings.density : glm::dvec3(0.0);
+  medium.glow = glm::vec4(glm::vec3(glow), settings.grid && !settings.grid->emission.texels.empty() ? 1.0f : 0.0f);
   fog.order = settings.order;
   fog.lights = std::move(lights);
   fog.grid = settings.grid;

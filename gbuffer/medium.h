@@ -32,11 +32,28 @@ struct Volume {
   T& at(glm::ivec3 place) { return texels[index(place)]; }
   const T& at(glm::ivec3 place) const { return texels[index(place)]; }
   const T& clamped(glm::ivec3 place) const { return at(glm::clamp(place, glm::ivec3(0), size - 1)); }
+
+  // Between the eight texels around a place, in double or vectors of it. Centres lie at +0.5; beside the box its
+  // nearest texels count.
+  template <class Wide>
+  Wide between(const glm::dvec3& place) const {
+    const glm::dvec3 from = place - 0.5, low = glm::floor(from), part = from - low;
+    const glm::ivec3 first(low);
+    Wide sum(0.0);
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::ivec3 offset(corner & 1, (corner >> 1) & 1, corner >> 2);
+      double share = 1.0;
+      for (int c = 0; c < 3; ++c) share *= offset[c] ? part[c] : 1.0 - part[c];
+      sum += share * Wide(clamped(first + offset));
+    }
+    return sum;
+  }
 };
 
-// Factors on a medium's density, >= 0, finite; nothing lies outside.
+// Factors on a medium's density, and what glows by itself in its box; nothing lies outside.
 struct DensityGrid {
-  Volume<float> density;
+  Volume<float> density;         // >= 0, finite
+  Volume<glm::vec4> emission;    // rgb: radiance that a metre adds, >= 0, finite; without texels where nothing glows
   glm::dmat4 boxFromWorld{1.0};  // its box becomes [0,1]^3
   float most = 0.0f;
 };
@@ -53,8 +70,10 @@ struct MediumSettings {
   double base = 0.0;         // height of the base
   glm::dvec3 albedo{1.0};    // of one scattering event, [0,1]
   double g = 0.0;            // -0.98 to 0.98, > 0 scatters forward
+  glm::dvec3 emission{0.0};  // radiance that a metre adds where it is as dense as `density`; grows with the density
   double farthest = 1000.0;  // metres from the eye beyond which there is none
   int steps = 64;            // of the march
+  double collimation = 1.0;  // [0,1]; below 1 it diffuses what lies behind it
   int order = shading::PLD_FOG_ORDERED;
   std::optional<Box> box;
   std::shared_ptr<const DensityGrid> grid;  // wins over the box
@@ -82,9 +101,14 @@ struct Fog {
   Camera camera;
   shading::Medium medium = {};
   int order = shading::PLD_FOG_ORDERED;
+  shading::DiffusionSettings diffusion = {};   // of one camera and its picture; k0 = 0 leaves diffusion out
   std::vector<shading::PunctualLight> lights;  // view space
   std::shared_ptr<const DensityGrid> grid;
   std::shared_ptr<const LightVolume> visibility;  // null: nothing stands before the lights
+
+  bool gridEmits() const { return grid && !grid->emission.texels.empty(); }
+  bool emits() const { return shading::mediumEmits(medium); }
+  bool diffuses() const { return medium.march.z > 0.0f && diffusion.k0 > 0.0f; }
 };
 
 // Throws std::logic_error for settings out of their range: the flags have checked them.

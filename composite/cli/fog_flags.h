@@ -2,13 +2,15 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "composite/pipeline/request.h"
 
 namespace pellucid::cli {
 
 struct FogFlags {
-  std::string fog, grid;
+  std::string fog;
+  std::vector<std::string> grids;
   void addTo(CLI::App& verb);
   void into(Request& request) const;  // throws UsageError
 };

@@ -84,8 +84,8 @@ void MethodFlags::into(Request& request) const {
   request.method = method;
   request.methodFrom = methodFrom;
   if (!methodFrom.empty()) {
-    for (const char* flag :
-         {"--method", "--weight", "--weight-range", "--weight-reference", "--weight-from", "--tolerance", "--systems"})
+    for (const char* flag : {"--method", "--weight", "--weight-range", "--weight-reference", "--weight-from",
+                             "--tolerance", "--systems", "--system-weight"})
       if (const CLI::Option* option = verb_->get_option_no_throw(flag); option && option->count() > 0)
         throw UsageError(
             fmt::format("--method-from: found a file with {}, expected one or the other: the file says both", flag));

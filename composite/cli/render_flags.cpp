@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "composite/cli/system_flags.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -28,9 +29,7 @@ void addWays(CLI::App& verb, RenderFlags& flags) {
           "Error to live with, proved for every pixel and channel of the mean of all passes: E times the larger of "
           "1 and the exact value, apart from the file's own rounding")
       ->check(CLI::NonNegativeNumber);
-  verb.add_option("--systems", flags.systems, "A pass of its own for every input file or named node, sorted coarsely")
-      ->check(CLI::IsMember({"off", "file", "node"}))
-      ->capture_default_str();
+  addSystemFlags(verb, flags.systems, flags.systemWeights);
   verb.add_flag("--measure", flags.measure, "Also composite the sorted truth and print the error against it");
 }
 
@@ -105,13 +104,7 @@ void RenderFlags::paintInto(Request& request) const {
     }
     request.paint = PaintWithin{*tolerance};
   }
-  if (systems == "off") return;
-  if (!sums && !listed)
-    throw UsageError(fmt::format("--systems: --method {} has no use for passes per system, expected a blended method",
-                                 request.method));
-  PaintSystems painted{systems == "file" ? SystemRule::file : SystemRule::node, std::nullopt};
-  if (listed) painted.method = listed->method;
-  request.paint = painted;
+  systemsInto(request, systems, systemWeights);
 }
 
 Request RenderFlags::requestOfView(const std::string& view, const std::vector<std::string>& views) const {

@@ -35,7 +35,7 @@ struct RenderVerb {
 
 struct RenderFlags {
   std::string opaque, systems = "off", edges = "resolve", filter;
-  std::vector<std::string> inputs, layers;
+  std::vector<std::string> inputs, layers, systemWeights;
   ReadFlags read;
   SceneFlags scene;
   TimeFlags time;

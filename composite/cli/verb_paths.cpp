@@ -1,5 +1,6 @@
 #include "composite/cli/verb_paths.h"
 
+#include "composite/pipeline/fog_text.h"
 #include "gbuffer/side_files.h"
 
 namespace pellucid::cli {
@@ -58,8 +59,7 @@ std::string fileNamedIn(const std::string& flag, const std::string& value) {
     return at == std::string::npos ? value : value.substr(at + 1);
   };
   if (flag == "--aov") return after('=');
-  const auto grid = value.rfind(".vdb:");
-  if (flag == "--fog-grid" && grid != std::string::npos) return value.substr(0, grid + 4);
+  if (flag == "--fog-grid") return readFogGrid(value).path;
   const bool side = flag == "--depth" || flag == "--layer-depth";
   const std::optional<SideFile> file = side ? sideFileOf(value) : std::nullopt;
   return file ? file->path : value;

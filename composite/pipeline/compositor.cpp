@@ -23,6 +23,7 @@
 #include "composite/pipeline/pass_picture.h"
 #include "composite/pipeline/refusals.h"
 #include "composite/pipeline/sums.h"
+#include "composite/pipeline/system_weights.h"
 #include "composite/pipeline/weight_file.h"
 #include "engine_bridge/scene/screen_bounds.h"
 #include "gbuffer/errors.h"
@@ -36,11 +37,25 @@ bool sameLight(const Request& a, const Request& b) {
   return a.passes == b.passes && a.particleLight == b.particleLight && a.shadows == b.shadows && a.fog == b.fog;
 }
 
+bool overDepth(const std::optional<shading::WeightSettings>& weight) {
+  const DepthWeight* row = weight ? depthWeightOf(weight->kind) : nullptr;
+  return row && row->reference == WeightReference::depth;
+}
+
 // Whether a power of depth needs to know where the layers begin.
 bool asksDepths(const Request& request) {
-  const SumsRequest& sums = request.sums;
-  const DepthWeight* row = sums.weight ? depthWeightOf(sums.weight->kind) : nullptr;
-  return !sums.weightReference && (fitsWeight(request) || (row && row->reference == WeightReference::depth));
+  if (request.sums.weightReference) return false;
+  if (fitsWeight(request) || overDepth(request.sums.weight)) return true;
+  const auto* systems = std::get_if<PaintSystems>(&request.paint);
+  return systems && std::any_of(systems->weights.begin(), systems->weights.end(), [](const SystemWeight& each) {
+           return !each.weight || (!each.whole && overDepth(each.weight));
+         });
+}
+
+bool fitsSystems(const Plan& plan) {
+  const auto* systems = plan.as<PaintSystems>();
+  return systems && std::any_of(systems->weights.begin(), systems->weights.end(),
+                                [](const SystemWeight& each) { return !each.weight; });
 }
 
 // The beauty as shadows leave it, for a file of planes; empty where they changed nothing.
@@ -230,6 +245,12 @@ Compositor::Run Compositor::prepare(const Request& request) {
                        run.lighting->picture.gbuffer->data);
     const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
     run.pass.weight = run.plan.pass.weight = fittedWeight(context, moving, run.pass);
+  }
+  if (fitsSystems(run.plan)) {
+    RunCounts unused;
+    const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+    const PaintContext context{run.plan, *shot_, run.lighting->picture, *run.sources, device_, journal_, unused};
+    run.plan.paint = fittedSystems(context, run.pass, depthPlanes(run.plan), edges.get());
   }
   return run;
 }

@@ -70,9 +70,10 @@ double meanSize(const std::vector<glm::dvec3>& colours) {
 
 DrawnProbes::DrawnProbes(const PaintContext& context, PassPicture& moving, const PassSettings& sample)
     : context_(context), moving_(moving), grid_(context.picture.gbuffer->data, probesOf(context.plan)) {
-  const int probed = placeProbes(sample);
   std::vector<Gathered> all;
-  for (int i = 0; i < probed; ++i) all.push_back(gathered(sample, i * context.plan.passes / probed));
+  const int probed = placeProbes(sample, all);
+  for (int i = static_cast<int>(all.size()); i < probed; ++i)
+    all.push_back(gathered(sample, i * context.plan.passes / probed));
   if (!touchesAll()) {
     std::vector<std::uint8_t> kept(count(), 0);
     for (const Gathered& pass : all) pass.drawn.mark(kept);
@@ -87,10 +88,10 @@ DrawnProbes::DrawnProbes(const PaintContext& context, PassPicture& moving, const
 
 // Closer together where layers touch few of the pixels, so that as many probes have something to tell; where even all
 // of those pixels are few, more of the passes are probed: highlights of one pass can be most of an error.
-int DrawnProbes::placeProbes(const PassSettings& sample) {
+int DrawnProbes::placeProbes(const PassSettings& sample, std::vector<Gathered>& known) {
   const int least = passesProbed(context_.plan);
   if (touchesAll()) return least;
-  const Gathered first = gathered(sample, 0);
+  Gathered first = gathered(sample, 0);
   std::vector<std::uint8_t> touched(count(), 0);
   first.drawn.mark(touched);
   const auto found = std::max<std::size_t>(static_cast<std::size_t>(std::count(touched.begin(), touched.end(), 1)), 1);
@@ -100,6 +101,8 @@ int DrawnProbes::placeProbes(const PassSettings& sample) {
     const std::size_t before = count();
     grid_ = ProbeGrid(context_.picture.gbuffer->data, std::min(wanted, pixels));
     expected = std::max<std::size_t>(found * count() / before, 1);
+  } else {
+    known.push_back(std::move(first));
   }
   return static_cast<int>(std::clamp<std::size_t>(2 * kProbes / expected, static_cast<std::size_t>(least),
                                                   static_cast<std::size_t>(context_.plan.passes)));

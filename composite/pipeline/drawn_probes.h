@@ -53,7 +53,9 @@ class DrawnProbes {
     ProbeLists drawn;
     std::optional<ProbeLists> split;
   };
-  int placeProbes(const PassSettings& sample);  // the number of passes that are probed
+  // The number of passes that are probed.
+  //   known  is given the first of them where the probes stay where they were gathered
+  int placeProbes(const PassSettings& sample, std::vector<Gathered>& known);
   Gathered gathered(const PassSettings& sample, int number);
   Pass passOf(const Gathered& from);
   ProbeLists listed(const PassSettings& sample, VolumeRule rule) const;

@@ -17,7 +17,8 @@ std::string weightFlags(const shading::WeightSettings& weight) {
   return flags;
 }
 
-shading::WeightSettings fittedWeight(const PaintContext& context, PassPicture& moving, const PassSettings& sample) {
+shading::WeightSettings fittedWeight(const PaintContext& context, PassPicture& moving, const PassSettings& sample,
+                                     const std::string& flag) {
   std::size_t count = 0;
   const WeightFit fit = context.journal.time(kFitStage, [&] {
     DrawnProbes probes(context, moving, sample);
@@ -27,7 +28,7 @@ shading::WeightSettings fittedWeight(const PaintContext& context, PassPicture& m
         [&](const shading::WeightSettings& weight) { return probes.roughError(weight); },
         [&](const shading::WeightSettings& weight) { return probes.error(weight); }, probes.rounding());
   });
-  context.journal.note(fmt::format("--weight auto{}: mean error {:.4g} on {} probes with layers; the same again: {}",
+  context.journal.note(fmt::format("{}{}: mean error {:.4g} on {} probes with layers; the same again: {}", flag,
                                    context.plan.weightReason.empty() ? "" : ", " + context.plan.weightReason,
                                    fit.meanError, count, weightFlags(fit.weight)));
   return fit.weight;

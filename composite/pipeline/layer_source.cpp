@@ -33,7 +33,7 @@ void LayerSources::each(const SourceView& view, const ListSink& sink) const {
 }
 
 bool LayerSources::mayScatter(const PassSettings& settings) const {
-  return (pass_ && pass_->scatters(settings)) ||
+  return (pass_ && pass_->scatters(settings)) || (settings.fog && settings.fog->diffuses()) ||
          std::any_of(joined_.begin(), joined_.end(), [](const auto& source) { return source->mayScatter(); });
 }
 

@@ -20,7 +20,7 @@ void Lighting::applyTo(ShadingSettings& settings, const Shot& shot) const {
 
 std::unique_ptr<Lighting> lightShot(const Request& request, const Shot& shot, Device& device, Journal& journal) {
   auto lighting = std::make_unique<Lighting>();
-  const PlacedFog placed = placeFogOf(request.fog, shot, request.shot.scene.metresPerUnit, journal);
+  const PlacedFog placed = placeFogOf(request.fog, request.scatter, shot, request.shot.scene.metresPerUnit, journal);
   lighting->shadows = journal.time(
       "shadows", [&] { return castShadows(request.shadows, shot, placed.fog, request.passes, device, journal); });
   lighting->picture = {&shot.opaque.gbuffer, &shot.opaque.gbuffer, shot.deepOpaque.get()};

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "composite/pipeline/refusals.h"
+#include "composite/pipeline/system_weights.h"
 #include "composite/pipeline/weight_file.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/exr_document.h"
@@ -14,7 +15,8 @@
 namespace pellucid {
 namespace {
 
-constexpr const char *kToleranceAttribute = "pellucid:tolerance", *kSystemsAttribute = "pellucid:systems";
+constexpr const char *kToleranceAttribute = "pellucid:tolerance", *kSystemsAttribute = "pellucid:systems",
+                     *kSystemWeightsAttribute = "pellucid:systemWeights";
 constexpr const char* kExpected = "what composite writes";
 
 [[noreturn]] void refuse(const std::string& path, const char* attribute, const std::string& found) {
@@ -49,8 +51,10 @@ std::map<std::string, std::string> methodAttributes(const Plan& plan) {
                                                 {kWeightAttribute, weightText(plan.pass.weight)}};
   if (const auto* within = plan.as<PaintWithin>())
     attributes[kToleranceAttribute] = fmt::format("{}", within->tolerance);
-  if (const auto* systems = plan.as<PaintSystems>())
+  if (const auto* systems = plan.as<PaintSystems>()) {
     attributes[kSystemsAttribute] = systems->rule == SystemRule::file ? "file" : "node";
+    if (!systems->weights.empty()) attributes[kSystemWeightsAttribute] = systemWeightsText(systems->weights);
+  }
   return attributes;
 }
 
@@ -69,8 +73,13 @@ Request methodByFile(const Request& request) {
   const auto* listed = std::get_if<PaintListed>(&taken.paint);
   if (const auto systems = exrText(path, kSystemsAttribute)) {
     if (*systems != "file" && *systems != "node") refuse(path, kSystemsAttribute, *systems);
-    PaintSystems painted{*systems == "file" ? SystemRule::file : SystemRule::node, std::nullopt};
+    PaintSystems painted{*systems == "file" ? SystemRule::file : SystemRule::node, std::nullopt, {}};
     if (listed) painted.method = listed->method;
+    if (const auto text = exrText(path, kSystemWeightsAttribute)) {
+      const auto weights = readSystemWeightsText(*text);
+      if (!weights) refuse(path, kSystemWeightsAttribute, *text);
+      painted.weights = *weights;
+    }
     taken.paint = painted;
   } else if (const auto tolerance = exrText(path, kToleranceAttribute)) {
     taken.paint = PaintWithin{toleranceIn(path, *tolerance)};

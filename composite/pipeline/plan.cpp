@@ -43,6 +43,19 @@ shading::WeightSettings weightOf(const Request& request, const ShotFacts& facts)
   return weight;
 }
 
+// Those of systems: each as if it were the picture's.
+void weighSystems(const Request& request, const ShotFacts& facts, Plan& plan) {
+  auto* systems = std::get_if<PaintSystems>(&plan.paint);
+  if (!systems) return;
+  for (SystemWeight& each : systems->weights) {
+    if (!each.weight || each.whole) continue;
+    Request alone = request;
+    alone.sums.weight = each.weight;
+    alone.sums.fitWeight = false;
+    each.weight = weightOf(alone, facts);
+  }
+}
+
 PassSettings passOf(const Request& request, const ShotFacts& facts) {
   PassSettings pass;
   static_cast<ResidencySettings&>(pass) = request.residency;
@@ -172,6 +185,7 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   }
   plan.tier = request.tier;
   plan.pass = passOf(request, facts);
+  weighSystems(request, facts, plan);
   plan.fitsWeight = fitsWeight(request);
   if (plan.fitsWeight && !request.sums.fitWeight)
     plan.weightReason = "the default; planes of several shots that are to add up take one by --weight or --weight-from";

@@ -78,6 +78,11 @@ const std::vector<Refusal>& refusals() {
          return !r.sums.weightFrom.empty() &&
                 (r.sums.weight || r.sums.fitWeight || r.sums.weightRange || r.sums.weightReference);
        }},
+      {"--system-weight", "a weight", "--method {}", "none, or a method that weighs", "its layers are not weighed",
+       [](const Request& r) {
+         const auto* systems = std::get_if<PaintSystems>(&r.paint);
+         return systems && !systems->weights.empty() && !weighs(r);
+       }},
       {"--normalisation", "one", "--method {}", "none, or a method that normalises",
        "it averages in a way of its own, or not at all",
        [](const Request& r) { return r.sums.normalisation && !normalises(r); }},
@@ -140,6 +145,7 @@ void dropUnread(Request& request) {
     sums.weightReference.reset();
     sums.weightFrom.clear();
     sums.fitWeight = false;
+    if (auto* systems = std::get_if<PaintSystems>(&request.paint)) systems->weights.clear();
   }
   if (request.passes == 1) {
     request.edges.reset();

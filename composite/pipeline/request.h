@@ -17,6 +17,7 @@
 #include "composite/pipeline/lens.h"
 #include "composite/pipeline/shot_time.h"
 #include "engine_bridge/scene/fitted_camera.h"
+#include "engine_bridge/scene/fog_grids.h"
 #include "engine_bridge/scene/gltf.h"
 #include "engine_bridge/scene/pass_settings.h"
 #include "gbuffer/medium.h"
@@ -43,9 +44,15 @@ struct PaintCheapest {     // the cheapest of the sums and the truth that lies w
   double tolerance = 0.0;  // as above
 };
 enum class SystemRule { file, node };
+struct SystemWeight {
+  std::string system;                             // a file as it was given or by its last part, or a node
+  std::optional<shading::WeightSettings> weight;  // empty: fitted to that system alone
+  bool whole = false;                             // range and reference, too, are as the weight says
+};
 struct PaintSystems {  // a pass for every input file or named node, sorted coarsely: WB13 section 3.4
   SystemRule rule = SystemRule::file;
-  std::optional<ChosenMethod> method;  // within a system; empty: the weighted sum
+  std::optional<ChosenMethod> method;      // within a system; empty: the weighted sum
+  std::vector<SystemWeight> weights = {};  // of those that have one of their own; the others share the picture's
 };
 using Paint = std::variant<PaintSums, PaintSorted, PaintListed, PaintSamples, PaintWithin, PaintCheapest, PaintSystems>;
 
@@ -119,16 +126,24 @@ struct ShadowRequest {
 
 struct FogText {
   MediumSettings medium;
-  bool hasDensity = false;  // the text says how dense it is
-  int shafts = 96;          // texels along the longest edge of the light volume; 0: nothing stands before the lights
-  bool zUp = false;         // the grid's
+  bool hasDensity = false;             // the text says how dense it is
+  std::optional<glm::dvec3> emission;  // radiance that a metre adds, of even fog or of an emission grid's 1
+  std::optional<double> blackbody;     // 1/m, see GlowSettings::absorption
+  std::optional<double> kelvin;        // see GlowSettings
+  int shafts = 96;   // texels along the longest edge of the light volume; 0: nothing stands before the lights
+  bool zUp = false;  // the grids'
   bool operator==(const FogText&) const = default;
+};
+struct FogGrid {
+  std::string path, name;  // OpenVDB; of the grid, or ""
+  GridRole role = GridRole::density;
+  bool operator==(const FogGrid&) const = default;
 };
 struct FogRequest {
   std::optional<FogText> text;  // --fog key=value,...
   std::string file;             // --fog FILE.json, or ""
-  std::string grid, gridName;   // --fog-grid FILE.vdb[:GRID], or ""
-  bool on() const { return text || !file.empty() || !grid.empty(); }
+  std::vector<FogGrid> grids;   // --fog-grid
+  bool on() const { return text || !file.empty() || !grids.empty(); }
   bool operator==(const FogRequest&) const = default;
 };
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "composite/pipeline/colour_step.h"
-#include "composite/pipeline/fog_step.h"
+#include "composite/pipeline/fog_text.h"
 #include "composite/pipeline/foliage_step.h"
 #include "composite/pipeline/memory_picture.h"
 #include "composite/pipeline/refusals.h"
@@ -24,8 +24,7 @@ void validate(const Request& request) {
   checkColours(request.shot.colour);
   checkShadows(request.shadows);
   checkFoliage(request.foliage);
-  if (request.fog.on() && request.fog.file.empty())
-    checkFog(request.fog.text.value_or(FogText()), !request.fog.grid.empty());
+  if (request.fog.on() && request.fog.file.empty()) checkFog(request.fog.text.value_or(FogText()), request.fog.grids);
 }
 
 }  // namespace pellucid

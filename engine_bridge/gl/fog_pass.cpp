@@ -7,7 +7,7 @@
 namespace pellucid::gl {
 namespace {
 
-constexpr GLuint kDensityUnit = 12, kValuesBlock = 2, kLightsBlock = 1;  // shaders/gl/fog.frag
+constexpr GLuint kDensityUnit = 12, kEmissionUnit = 14, kValuesBlock = 2, kLightsBlock = 1;  // shaders/gl/fog.frag
 
 // Mirrors FogValues of shaders/gl/fog.frag.
 struct FogBlock {
@@ -16,9 +16,10 @@ struct FogBlock {
   glm::vec4 pixelRay{0.0f};    // offset, scale
   glm::ivec4 gridTexels{1};    // size; w: lights
   glm::ivec4 volumeTexels{1};  // size of one light; w: 1 where there is one
-  glm::ivec4 choices{0};       // order of the march; 1 orthographic
+  glm::ivec4 choices{0};       // order of the march; 1 orthographic; 1 for net coverage
+  glm::vec4 spread{0.0f};      // k0, k1 metres; F_px
 };
-static_assert(sizeof(shading::Medium) == 12 * 16 && sizeof(FogBlock) == 20 * 16);
+static_assert(sizeof(shading::Medium) == 13 * 16 && sizeof(FogBlock) == 22 * 16);
 
 }  // namespace
 
@@ -29,6 +30,9 @@ void FogPass::upload(const Fog& fog) {
     densityOf_ = fog.grid;
     density_ = fog.grid ? upload3d(fog.grid->density.size, GL_R32F, GL_RED, fog.grid->density.texels.data())
                         : upload3d(glm::ivec3(1), GL_R32F, GL_RED, &one);
+    emission_ = fog.gridEmits()
+                    ? upload3d(fog.grid->emission.size, GL_RGBA32F, GL_RGBA, fog.grid->emission.texels.data())
+                    : upload3d(glm::ivec3(1), GL_RGBA32F, GL_RGBA, &open);
   }
   if (!open_) open_ = upload3d(glm::ivec3(1), GL_RGBA32F, GL_RGBA, &open);
 }
@@ -50,7 +54,8 @@ void FogPass::draw(const Fog& fog, const FogFrame& frame) {
   } else {
     block.volumeTexels = {1, 1, 1, 0};
   }
-  block.choices = {fog.order, frame.rays.orthographic ? 1 : 0, 0, 0};
+  block.choices = {fog.order, frame.rays.orthographic ? 1 : 0, fog.diffusion.netCoverage, 0};
+  block.spread = {fog.diffusion.k0, fog.diffusion.k1, fog.diffusion.focalPixels, 0.0f};
   glNamedBufferData(values_.name(), sizeof(block), &block, GL_STREAM_DRAW);
   const shading::PunctualLight none{};
   const std::size_t lights = std::max<std::size_t>(fog.lights.size(), 1);
@@ -61,6 +66,8 @@ void FogPass::draw(const Fog& fog, const FogFrame& frame) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLightsBlock, lights_.name());
   glBindTextureUnit(kDensityUnit, density_.name());
   glBindSampler(kDensityUnit, 0);
+  glBindTextureUnit(kEmissionUnit, emission_.name());
+  glBindSampler(kEmissionUnit, 0);
   if (fog.visibility)
     visibility_.bind(fog.visibility);
   else

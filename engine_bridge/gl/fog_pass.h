@@ -25,9 +25,9 @@ class FogPass {
   void upload(const Fog& fog);
   Buffer values_, lights_;
   VertexArray noVertices_;
-  Texture3d density_, open_;
+  Texture3d density_, emission_, open_;
   VolumeTexture visibility_;
-  std::shared_ptr<const DensityGrid> densityOf_;  // what density_ holds
+  std::shared_ptr<const DensityGrid> densityOf_;  // what density_ and emission_ hold
 };
 
 }  // namespace pellucid::gl

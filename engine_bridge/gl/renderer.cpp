@@ -168,10 +168,11 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.surroundings = !features_.environment && settings.surroundings != glm::vec3(0.0f);
   features_.lightVolume = settings.particleLight != nullptr;
   features_.solids = needs.solids || all;
-  features_.adds = needs.adds;
+  features_.adds = needs.adds || (settings.fog && settings.fog->emits());
   features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (needs.refracts || all);
   features_.disperses = features_.refracts && settings.scatter.dispersion && (needs.disperses || all);
-  features_.diffuses = settings.scatter.k0 > 0.0f && (needs.diffuses || all);
+  const bool fogDiffuses = settings.fog && settings.fog->diffuses();
+  features_.diffuses = (settings.scatter.k0 > 0.0f && (needs.diffuses || all)) || fogDiffuses;
   features_.grey = !needs.coloured && !all;
   // Occluders are planes of the full resolution.
   features_.occludes =

@@ -9,9 +9,10 @@
 namespace pellucid {
 
 struct GridOptions {
-  std::string name;            // of the grid; "": `density`, else the file's only float grid
-  double metresPerUnit = 1.0;  // --unit
-  bool zUp = false;            // the file's up is z, as Blender's is; glTF's is y
+  std::string name;                   // of the grid; "": the preferred one, else the file's only float grid
+  std::string preferred = "density";  // name of what is looked for
+  double metresPerUnit = 1.0;         // --unit
+  bool zUp = false;                   // the file's up is z, as Blender's is; glTF's is y
 };
 
 using DensityGridReader = std::shared_ptr<const DensityGrid>(const std::string& path, const GridOptions& options,

@@ -6,24 +6,6 @@
 #include <cmath>
 
 namespace pellucid {
-namespace {
-
-float densityAt(const DensityGrid& grid, const glm::dvec3& box) {
-  const glm::dvec3 at = box * glm::dvec3(grid.density.size) - 0.5;
-  const glm::dvec3 low = glm::floor(at), part = at - low;
-  const glm::ivec3 first(low);
-  double sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 offset(corner & 1, (corner >> 1) & 1, corner >> 2);
-    double share = 1.0;
-    for (int c = 0; c < 3; ++c) share *= offset[c] ? part[c] : 1.0 - part[c];
-    sum += share * static_cast<double>(grid.density.clamped(first + offset));
-  }
-  return static_cast<float>(sum);
-}
-
-}  // namespace
-
 float gridDepth(const Fog& fog, const shading::PunctualLight& light, const glm::dvec3& point, double step) {
   if (!fog.grid) return 0.0f;
   const bool endless = light.direction.w == 0.0f;
@@ -43,7 +25,8 @@ float gridDepth(const Fog& fog, const shading::PunctualLight& light, const glm::
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
     const glm::dvec3 at = point + (start + (i + 0.5) * length) * toLight;
-    sum += static_cast<double>(densityAt(*fog.grid, glm::dvec3(boxFromView * glm::dvec4(at, 1.0))));
+    const glm::dvec3 texel = glm::dvec3(boxFromView * glm::dvec4(at, 1.0)) * glm::dvec3(fog.grid->density.size);
+    sum += static_cast<double>(static_cast<float>(fog.grid->density.between<double>(texel)));
   }
   return static_cast<float>(sum * length * static_cast<double>(fog.medium.extinction.x));
 }

@@ -10,7 +10,10 @@
 #include "gl/exact_cut.glsl"
 #include "gl/contact_depth.glsl"
 #include "gl/identity.glsl"
-#include "shared/stochastic_mask.glsl"  // here, where no #if leaves it out: a text is included once
+// Here, where no #if leaves them out: a text is included once.
+#include "shared/diffusion.glsl"
+#include "shared/resolve.glsl"
+#include "shared/stochastic_mask.glsl"
 #ifdef ENVIRONMENT
 #include "gl/environment.glsl"
 #endif

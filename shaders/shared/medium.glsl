@@ -2,7 +2,9 @@
 // Fog along one ray: how dense it is, how it is cut into steps, and how it enters a pixel's sums. PT17 section 7.2, MODEL
 // section 11. Transmittance of even and layered fog is a closed form; light that it scatters is marched.
 #include "shared/accumulate.glsl"
+#include "shared/diffusion.glsl"
 #include "shared/lights.glsl"
+#include "shared/resolve.glsl"
 #include "shared/surface.glsl"
 
 // A medium, in the view space of one camera.
@@ -10,12 +12,14 @@ struct Medium {
   vec4 scattering;    // rgb albedo of one scattering event, [0,1]; a: g of Henyey and Greenstein, (-1,1), > 0 forward
   vec4 extinction;    // x: 1/m at the base; y: 1/m by which its logarithm falls with height; z: 1 where a box bounds it;
                       // w: 1 where a grid multiplies it
-  vec4 march;         // x: metres beyond which there is none; y: steps
+  vec4 march;         // x: metres beyond which there is none; y: steps; z: 1 - collimation, how much it diffuses
   vec4 up;            // unit, of the world; w: height of view space's origin over the base, metres
   vec4 ambient;       // rgb mean radiance of the surroundings
   vec4 ambientRed;    // xyz first order of it about a direction, per channel: radiance is ambient + dot(this, direction)
   vec4 ambientGreen;
   vec4 ambientBlue;
+  vec4 glow;          // rgb radiance that it emits per opacity: what a metre adds over the extinction; a: 1 where a grid
+                      // emits, too
   mat4 boxFromView;   // the box becomes [0,1]^3
 };
 
@@ -210,6 +214,19 @@ PLD_FN FogStep gridStep(Medium medium, FogSpan span, int turn) {
   return part;
 }
 
+PLD_FN bool mediumEmits(Medium medium) {
+  return medium.glow.r + medium.glow.g + medium.glow.b + medium.glow.a > 0.0f;
+}
+
+// Light that a step emits, as its near end sends it: integral of e exp(-t) over an even step, t the optical depth that
+// is before.
+//   perMetre  e of a grid at the step's middle: radiance that a metre adds
+PLD_FN vec3 emittedByStep(Medium medium, FogStep part, vec3 perMetre) {
+  precise vec3 sent = pldOneMinusExp(part.depth) * vec3(medium.glow) +
+                      ((part.end - part.begin) * fadingMean(part.depth)) * perMetre;
+  return sent;
+}
+
 // Light of the surroundings that is sent to the eye per event, before the albedo. Henyey and Greenstein's coefficients are
 // the powers of g, so that of the first order is g itself.
 PLD_FN vec3 ambientTowardsEye(Medium medium, vec3 direction) {
@@ -234,6 +251,10 @@ struct FogSums {
   float z;            // the same of z
   float share;        // the same of 1
   vec3 weighed;       // sum of w o S
+  vec3 emitted;       // light of its own, front to back: apart from the radiance above, which it scatters
+  float emittedWeight;  // sum of w_z times the mean of it
+  float emittedZ;       // the same of z
+  float seenZ;          // sum of z times what a step hides of the eye's light: in order, whatever the sums' order
 };
 
 PLD_FN FogSums noFog() {
@@ -246,7 +267,30 @@ PLD_FN FogSums noFog() {
   sums.z = 0.0f;
   sums.share = 0.0f;
   sums.weighed = vec3(0.0f);
+  sums.emitted = vec3(0.0f);
+  sums.emittedWeight = 0.0f;
+  sums.emittedZ = 0.0f;
+  sums.seenZ = 0.0f;
   return sums;
+}
+
+// Light that a step emits; before addStep() of the same.
+PLD_FN FogSums addEmitted(FogSums sums, float z, vec3 sent, WeightSettings settings) {
+  precise vec3 seen = sums.passed * sent;
+  precise float mean = meanOf(seen);
+  precise vec3 emitted = sums.emitted + seen;
+  precise float weight = sums.emittedWeight + depthWeight(settings, z) * mean;
+  precise float zSum = sums.emittedZ + z * mean;
+  FogSums result = sums;
+  result.emitted = emitted;
+  result.emittedWeight = weight;
+  result.emittedZ = zSum;
+  return result;
+}
+
+// Whether a ray has met anything.
+PLD_FN bool fogShows(FogSums fog) {
+  return fog.share > 0.0f || meanOf(fog.emitted) > 0.0f;
 }
 
 //   source      light scattered towards the eye, per opacity: radiance
@@ -264,8 +308,9 @@ PLD_FN FogSums addStep(FogSums sums, float depth, float z, vec3 source, WeightSe
   precise float weightZ = sums.depthWeight + wz * share;
   precise float zSum = sums.z + z * share;
   precise float shareSum = sums.share + share;
+  precise float seenZ = sums.seenZ + z * seen;
   precise vec3 weighed = sums.weighed + (w * share) * source;
-  FogSums result;
+  FogSums result = sums;
   result.radiance = radiance;
   result.passed = passed;
   result.depth = total;
@@ -274,22 +319,56 @@ PLD_FN FogSums addStep(FogSums sums, float depth, float z, vec3 source, WeightSe
   result.z = zSum;
   result.share = shareSum;
   result.weighed = weighed;
+  result.seenZ = seenZ;
   return result;
 }
 
+// What a ray emits, as the sums keep light that adds: `light` and its mean weight.
+struct FogLightSums {
+  vec3 light;
+  float weight;
+};
+
+// Resolving takes from light what all occluders of its pixel may hide of it, the fog itself among them, which the march
+// has taken already. So it is divided by that part: fog alone shows just what it emits. No light is more than doubled:
+// where the fog hides more than half of what is behind it and its light is weighed as if it came from there, the light
+// counts as nearer.
+PLD_FN FogLightSums fogLightSums(FogSums fog, float depth, float hides) {
+  FogLightSums sums;
+  sums.light = fog.emitted;
+  sums.weight = 0.0f;
+  float mean = meanOf(fog.emitted);
+  if (!(mean > 0.0f)) return sums;
+  precise float own = fog.emittedWeight / mean;
+  sums.weight = own;
+  if (!(fog.share > 0.0f)) return sums;
+  precise float occluders = fog.depthWeight / fog.share;
+  if (!(occluders > 0.0f)) return sums;
+  float beta = pldExp(-depth);
+  precise float least = occluders * max(1.0f - 2.0f * beta, 0.0f);
+  sums.weight = max(own, least);
+  precise float ratio = min(sums.weight / occluders, 1e12f);
+  precise vec3 light = fog.emitted / lightVisibility(beta, hides, ratio);
+  sums.light = light;
+  return sums;
+}
+
 // A ray's fog among the sums of its pixel: one layer. Ordered, its colour is that of the march and its weight the mean of
-// its steps'; else the plain sums over the steps.
+// its steps'; else the plain sums over the steps. What it emits is light that adds, under both orders as marched.
 PLD_FN OitSums fogOitSums(FogSums fog, int order) {
   float depth = min(fog.depth, PLD_OPAQUE_DEPTH);
   float hides = pldOneMinusExp(depth);
+  FogLightSums emitted = fogLightSums(fog, depth, hides);
+  float share = fog.share > 0.0f ? fog.share : 1.0f;  // fog that only emits hides nothing
   OitSums sums;
-  sums.light = vec3(0.0f);
-  sums.lightWeight = 0.0f;
+  sums.light = emitted.light;
+  precise float lightWeight = emitted.weight * meanOf(emitted.light);
+  sums.lightWeight = lightWeight;
   sums.depth = vec3(depth);
   sums.count = 1.0f;
-  precise float weight = fog.weight / fog.share;
-  precise float opacityWeight = hides * (fog.depthWeight / fog.share);
-  precise float opacityZ = hides * (fog.z / fog.share);
+  precise float weight = fog.weight / share;
+  precise float opacityWeight = hides * (fog.depthWeight / share);
+  precise float opacityZ = hides * (fog.z / share);
   precise vec3 ordered = weight * fog.radiance;
   precise float hidden = weight * hides;
   sums.numerator = order == PLD_FOG_ORDERED ? ordered : fog.weighed;
@@ -300,8 +379,29 @@ PLD_FN OitSums fogOitSums(FogSums fog, int order) {
   return sums;
 }
 
-// Mean planar depth of what is seen of it.
+// Mean planar depth of what is seen of it; of fog that only emits, of its light.
 PLD_FN float fogZ(FogSums fog) {
-  precise float z = fog.z / fog.share;
+  bool hides = fog.share > 0.0f;
+  precise float z = (hides ? fog.z : fog.emittedZ) / (hides ? fog.share : meanOf(fog.emitted));
   return z;
+}
+
+// How far a ray's fog spreads what lies behind it, and from where: PT17 eq. 7 of the one layer that a ray's fog is,
+// which covers what it hides and lies where what is seen of it lies in the mean. No cut between surfaces changes it.
+struct FogSpread {
+  float variance;  // s^2, float pixels^2
+  float z;         // planar metres
+};
+
+//   behind  planar depth of what ends the ray, +inf for nothing
+PLD_FN FogSpread fogSpread(Medium medium, FogSums fog, DiffusionSettings settings, float behind) {
+  FogSpread spread;
+  spread.variance = 0.0f;
+  spread.z = intBitsToFloat(0x7f800000);
+  float hides = pldOneMinusExp(min(fog.depth, PLD_OPAQUE_DEPTH));
+  if (!(medium.march.z > 0.0f && settings.k0 > 0.0f && hides > 0.0f)) return spread;
+  precise float z = fog.seenZ / hides;
+  spread.z = max(z, 1e-6f);
+  spread.variance = layerVariance(settings, hides, vec3(0.0f), 1.0f - medium.march.z, spread.z, behind);
+  return spread;
 }

@@ -33,6 +33,12 @@ Marched orderedMarch(const Air& air, const std::vector<Lamp>& lamps, const Vec& 
     }
     const double before = std::exp(-opticalDepth), hides = -std::expm1(-extinction * step);
     for (std::size_t c = 0; c < 3; ++c) sum.radiance[c] += before * hides * air.albedo[c] * arriving[c];
+    if (air.emission) {
+      // Even over the step: the mean of what the step itself leaves of it.
+      const double depth = extinction * step, left = depth > 0 ? hides / depth : 1.0;
+      const Vec emitted = air.emission(point);
+      for (std::size_t c = 0; c < 3; ++c) sum.radiance[c] += before * left * step * emitted[c];
+    }
     opticalDepth += extinction * step;
   }
   sum.transmittance = std::exp(-opticalDepth);

@@ -1,5 +1,5 @@
 // The unshared voice of fog: a front-to-back march in double precision, in world space, written from the radiative
-// transfer of single scattering alone. Includes nothing of shaders/ or composite/.
+// transfer of emission and single scattering alone. Includes nothing of shaders/ or composite/.
 #pragma once
 #include <array>
 #include <functional>
@@ -14,6 +14,8 @@ struct Air {
   Vec albedo{1, 1, 1};
   double g = 0;
   Vec ambient{};  // radiance from everywhere
+  // Radiance that a metre adds; null: none.
+  std::function<Vec(const Vec&)> emission = nullptr;
 };
 
 struct Lamp {

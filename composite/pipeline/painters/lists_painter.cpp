@@ -90,7 +90,7 @@ class ListsPainter : public Painter {
 
   void list(const PassSettings& sample, int pass, Veil& veil) {
     PassSettings listed = fullResolutionPart(context_.plan, sample);
-    if (fogBeside()) listed.fog = nullptr;
+    if (fogBeside(sample)) listed.fog = nullptr;
     const SourceView view{listed, context_.picture, mixer_->rule()};
     const ListSink mixes = [&](const FragmentLists& lists) {
       if (!context_.sources.triangles()) context_.counts.fragments += lists.fragments.size();
@@ -105,7 +105,9 @@ class ListsPainter : public Painter {
            context_.plan.lowResolution == 1 && !context_.sources.mayScatter(sample);
   }
 
-  bool fogBeside() const { return context_.plan.heldOut && mixer_->fogBeside(); }
+  bool fogBeside(const PassSettings& sample) const {
+    return context_.plan.heldOut && sample.fog && mixer_->fogBeside(*sample.fog);
+  }
 
   void window(const PassSettings& sample, int pass, const FragmentLists& given, Veil& veil) {
     // Every method shows the same background, which the pixel's scattering layers alone decide.
@@ -135,7 +137,7 @@ class ListsPainter : public Painter {
       mixer_->mix(mixed, lists, veil);
       return;
     }
-    const HeldOutRow heldOut = holdOut(lists, *context_.picture.deepOpaque, fogBeside() && sample.fog);
+    const HeldOutRow heldOut = holdOut(lists, *context_.picture.deepOpaque, fogBeside(sample));
     const Window& entries = heldOut.lists.window;
     if (entries.width() == 0) return;
     Veil row(entries.width(), 1);

@@ -27,8 +27,8 @@ class Mixer {
   virtual bool settled() { return true; }
   virtual void finish(Veil& mean) { (void)mean; }
   virtual VolumeRule rule() const { return VolumeRule::midDepth; }
-  virtual bool exactScatter() const { return false; }  // what scatters is summed so that no order shows
-  virtual bool fogBeside() const { return false; }     // it adds fog itself, where a row is mixed
+  virtual bool exactScatter() const { return false; }         // what scatters is summed so that no order shows
+  virtual bool fogBeside(const Fog&) const { return false; }  // it adds fog itself, where a row is mixed
   // Composites what is drawn at low resolution, of the view's window.
   virtual void mixTexels(const Mixed& mixed, const FragmentLists& lists, Veil& veil);
   // Depth and colour alone are read, in any blocks: lean lists will do.

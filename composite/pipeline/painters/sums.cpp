@@ -40,7 +40,8 @@ class SumsMixer : public Mixer {
     const Window places = placesWindow(*context.picture.deepOpaque);
     kept->places = emptySums(context.plan, context.plan.pass, context.picture.deepOpaque->display, places);
   }
-  bool fogBeside() const override { return true; }
+  // What diffuses is listed: each sample of the picture is behind some of it.
+  bool fogBeside(const Fog& fog) const override { return !fog.diffuses(); }
   void endPass(const OitPlanes& scatter) override {
     if (kept_) kept_->scatter = scatter;
   }
@@ -49,7 +50,7 @@ class SumsMixer : public Mixer {
     const Plan& plan = context_.plan;
     OitPlanes planes = emptySums(plan, mixed.sample, lists.window, lists.window);
     foldInto(plan, lists, mixed.sample, planes, context_.counts.clamps);
-    if (mixed.sample.fog && mixed.row)
+    if (mixed.sample.fog && fogBeside(*mixed.sample.fog) && mixed.row)
       addFog(*mixed.sample.fog, *context_.picture.gbuffer, mixed.sample.sample, *mixed.row, planes,
              &context_.counts.clamps);
     if (kept_ && mixed.row) putAtPlaces(*mixed.row, planes, kept_->places);

@@ -12,7 +12,7 @@
 #include "composite/pipeline/painters/lists_painter.h"
 #include "composite/pipeline/painters/system_canvas.h"
 #include "composite/pipeline/sums.h"
-#include "composite/pipeline/systems.h"
+#include "composite/pipeline/system_weights.h"
 
 namespace pellucid {
 namespace {
@@ -77,6 +77,7 @@ class SystemsPainter : public Painter {
     systems_ = context.journal.time("split systems", [&] {
       return splitSystems(context.plan.as<PaintSystems>()->rule, context.shot, context.device, context.journal);
     });
+    checkSystemNames(*context.plan.as<PaintSystems>(), systems_);
     wholePlan_.paint = PaintSums{};
     wholePlan_.route =
         wholePlan_.isExact() || wholePlan_.deepFiles || !context.shot.hasScene ? Route::foldedSums : Route::drawnSums;
@@ -93,8 +94,9 @@ class SystemsPainter : public Painter {
     const PaintContext whole{wholePlan_,       context_.shot, context_.picture, context_.sources, context_.device,
                              context_.journal, counts};
     PassSettings bare = sample;
-    bare.fog = nullptr;  // it neither bends nor hides all
-    const OitPlanes planes = sumsOf(whole, bare);
+    bare.fog = nullptr;  // it does not hide all
+    OitPlanes planes = sumsOf(whole, bare);
+    if (sample.fog) addFogScattering(*sample.fog, gbuffer, sample.sample, planes);
     const DeepOpaque* deep = context_.picture.deepOpaque;
     SystemCanvas canvas(context_.picture);
     Veil veil = canvas.empty();
@@ -116,8 +118,11 @@ class SystemsPainter : public Painter {
     return veil;
   }
 
-  void mixSystem(const LayerSystem& system, const PassSettings& sample, int pass, const OitPlanes& whole,
+  void mixSystem(const LayerSystem& system, const PassSettings& shared, int pass, const OitPlanes& whole,
                  SystemCanvas& canvas, Veil& own, RunCounts& counts) {
+    PassSettings sample = shared;
+    if (const SystemWeight* weight = weightOf(*context_.plan.as<PaintSystems>(), system))
+      sample.weight = *weight->weight;
     if (system.pass) system.pass->over(*context_.picture.gbuffer, context_.shot.camera);
     LayerSources sources(system.pass.get());
     if (system.deep) sources.join(deepFiles({system.deep, 1}));

@@ -25,7 +25,8 @@ std::string namesOf(const openvdb::GridPtrVec& grids) {
 }
 
 // Descriptors alone are read here: a damaged tree is met only where it is wanted.
-std::string wantedName(openvdb::io::File& file, const std::string& path, const std::string& name) {
+std::string wantedName(openvdb::io::File& file, const std::string& path, const GridOptions& options) {
+  const std::string& name = options.name;
   const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
   std::vector<std::string> floats;
   for (const auto& grid : *grids) {
@@ -33,11 +34,11 @@ std::string wantedName(openvdb::io::File& file, const std::string& path, const s
     if (grid->valueType() == "float") floats.push_back(grid->getName());
   }
   for (const std::string& each : floats)
-    if (each == "density") return each;
+    if (each == options.preferred) return each;
   if (floats.size() == 1) return floats[0];
-  throw MeaningError(fmt::format(
-      "{}: found the grids {}, expected {}", path, namesOf(*grids),
-      name.empty() ? "a float grid `density`, or one float grid" : fmt::format("a float grid named '{}'", name)));
+  throw MeaningError(fmt::format("{}: found the grids {}, expected {}", path, namesOf(*grids),
+                                 name.empty() ? fmt::format("a float grid `{}`, or one float grid", options.preferred)
+                                              : fmt::format("a float grid named '{}'", name)));
 }
 
 glm::dmat4 worldFromIndex(const openvdb::math::Transform& transform, const std::string& path) {
@@ -86,7 +87,7 @@ std::shared_ptr<DensityGrid> read(const std::string& path, const GridOptions& op
                                   std::vector<std::string>& notes) {
   openvdb::io::File file(path);
   file.open(false);  // read now: a file that shrinks later is then none of ours
-  const std::string name = wantedName(file, path, options.name);
+  const std::string name = wantedName(file, path, options);
   const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name));
   if (!grid) throw InputError(fmt::format("{}: the grid '{}' could not be read", path, name));
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET)
