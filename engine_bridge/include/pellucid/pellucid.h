@@ -20,13 +20,13 @@
 
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR                                                                          \
-  8 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
+  9 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,         \
        rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,    \
        the exact tier; refraction and diffusion without PLD_FEATURE_LIGHT keep no light that adds, \
        which is implied for hosts of before. 0.5: PLD_FLAG_VALIDATE, pld_create_info.message; what \
        could be misused in silence is refused, and to hosts of before said as a warning.           \
        0.6: pld_frame.weight_reference. 0.7: PLD_METHOD_OVER, PLD_FEATURE_OUTPUTS,                 \
-       PLD_FLAG_TRUST_TEXTURES. 0.8: nothing new.                                                  \
+       PLD_FLAG_TRUST_TEXTURES. 0.9: recipe.h.                                                     \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
