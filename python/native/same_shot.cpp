@@ -27,10 +27,7 @@ bool same(const ReadOptions& a, const ReadOptions& b) {
 }
 
 bool same(const SceneOptions& a, const SceneOptions& b) {
-  const auto& [unit, lumens, overrides, root, stream, seconds, by, animations] = a;
-  const auto& [unit2, lumens2, overrides2, root2, stream2, seconds2, by2, animations2] = b;
-  return unit == unit2 && lumens == lumens2 && overrides == overrides2 && root == root2 && stream == stream2 &&
-         seconds == seconds2 && by == by2 && animations == animations2;
+  return a == b;
 }
 
 bool same(const ShotTime& a, const ShotTime& b) {
