@@ -147,7 +147,7 @@ TEST_F(GlowingFog, TemperatureIsABlackBody) {
   EXPECT_GT(body.r, body.g);
   // The same by its role, whatever it is called.
   ASSERT_EQ(run({"--fog-grid", "fire.vdb:flames=temperature", "--fog", "kelvin=3000,blackbody=0.05"}).code, 0);
-  EXPECT_NEAR(picture().at(2, 2).r, .25 + 3 * (got.r - .25), 1e-5 * body.r);  // 3 m of it
+  EXPECT_NEAR(picture().at(2, 2).r, .25 + 3 * (static_cast<double>(got.r) - .25), 1e-5 * body.r);  // 3 m of it
 }
 
 TEST_F(GlowingFog, WrongGridsAreRefused) {
