@@ -32,6 +32,17 @@ void requireMatch(const GBuffer& gbuffer) {
     throw std::logic_error("the G-buffer's depth does not have the size of its data window");
 }
 
+// Of fragments that know whether they lie behind the eye's plane. An orthographic view's triangles, cut there before,
+// would end where the rasteriser rounds the cut to, which for steep ones is far from the plane.
+glm::mat4 clipUncut(const Camera& camera, const Window& display, const Window& data, glm::dvec2 sample) {
+  glm::mat4 clip(clipFromView(camera, display, data, sample));
+  if (camera.orthographic) {
+    clip[2][2] = 0.0f;
+    clip[3][2] = 0.5f;
+  }
+  return clip;
+}
+
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
@@ -262,13 +273,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   const Window& data = gbuffer_->data;
   const Window part{data.x0 + superTile.x0, data.y0 + superTile.y0, data.x0 + superTile.x1, data.y0 + superTile.y1};
   frame_ = FrameBlock{};
-  frame_.clipFromView = glm::mat4(clipFromView(camera_, gbuffer_->display, part, settings.sample));
-  // The fragments know which of them lie behind the eye's plane. Cut there before, an orthographic view's triangles would
-  // end where the rasteriser rounds the cut to, which for steep ones is far from the plane.
-  if (camera_.orthographic) {
-    frame_.clipFromView[2][2] = 0.0f;
-    frame_.clipFromView[3][2] = 0.5f;
-  }
+  frame_.clipFromView = clipUncut(camera_, gbuffer_->display, part, settings.sample);
   frame_.surroundings = glm::vec4(settings.surroundings, 0.0f);
   frame_.weightNear = settings.weight.rangeNear;
   frame_.weightFar = settings.weight.rangeFar;

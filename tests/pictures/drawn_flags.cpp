@@ -53,11 +53,11 @@ void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
 }
 
 // The surroundings light the fog; of what it scatters all that is not its albedo's share is theirs.
-void drawAir(const reference::Air& air, Random& random, DrawnFlags& flags) {
+void drawAir(const reference::EvenAir& air, Random& random, DrawnFlags& flags) {
   if (!(air.density > 0.0)) return;
   const double part = random.between(0.3, 1.0);
   std::string fog = fmt::format("--fog=density={},albedo={}", air.density, part);
-  if (air.farthest != reference::Air().farthest) fog += fmt::format(",far={}", air.farthest);
+  if (air.farthest != reference::EvenAir().farthest) fog += fmt::format(",far={}", air.farthest);
   if (air.inside) {
     const reference::Vec3 low = air.inside->centre - air.inside->half, high = air.inside->centre + air.inside->half;
     fog += fmt::format(",box={}:{}:{}:{}:{}:{}", low.x, low.y, low.z, high.x, high.y, high.z);

@@ -250,7 +250,7 @@ void makeGlass(SceneMaker& maker, Random& random) {
 // Fog, of a few depths of the scene, everywhere or in a box that may hold the eye.
 void fillAir(SceneMaker& maker, Random& random) {
   const double size = maker.scene().size;
-  reference::Air& air = maker.scene().numbers.air;
+  reference::EvenAir& air = maker.scene().numbers.air;
   air.density = logBetween(random, 0.01, 3.0) / size;
   air.light = maker.scene().oneColour ? maker.oneColour() : glm::min(drawnColour(random), Vec3(1.0));
   if (chance(random, 0.5)) air.farthest = random.between(0.5, 3.0) * size;

@@ -82,7 +82,7 @@ struct Mesh {
 };
 
 // Even fog under even light, up to what is opaque.
-struct Air {
+struct EvenAir {
   double density = 0.0;       // extinction of a metre
   Vec3 light{0.0};            // that all of it would show
   double farthest = 1000.0;   // metres from the eye, or from the eye's plane, beyond which there is none
@@ -91,7 +91,7 @@ struct Air {
 
 struct PictureScene {
   Eye eye;
-  Air air;
+  EvenAir air;
   std::vector<Solid> solids;
   std::vector<Texels> textures;
   std::vector<Mesh> meshes;

@@ -52,7 +52,7 @@ Vec4 colourOf(const PictureScene& scene, const Mesh& mesh, const std::array<int,
 }
 
 // Optical depth of the air between two depths on a ray.
-double airBetween(const Air& air, const Ray& ray, double first, double last) {
+double airBetween(const EvenAir& air, const Ray& ray, double first, double last) {
   const double metres = glm::length(ray.along);
   last = std::min(last, air.farthest / metres);
   for (int axis = 0; axis < 3 && air.inside; ++axis) {
