@@ -190,7 +190,7 @@ TEST(FogEmission, FlamesInSmokeAgainstTheReference) {
       lamp.place = {1.0, 2.5, -5.0};
       lamp.intensity = {6, 6, 6};
       const reference::Marched truth =
-          reference::orderedMarch(air, {lamp}, {0, 1, 0}, {way.x, way.y, way.z}, 9.0 / -way.z, 3000);
+          reference::orderedMarch(air, {lamp}, {0, 1, 0}, {way.x, way.y, way.z}, 9.0 / -way.z, 12000);
       for (std::size_t c = 0; c < 3; ++c) {
         const int k = static_cast<int>(c);
         const double wanted = truth.radiance[c] + truth.transmittance * static_cast<double>(stage.gbuffer.beauty[0][k]);
