@@ -247,7 +247,7 @@ TEST_F(DiffusingFog, TheWidthOfAnEdgeIsThatOfTheEquation) {
         std::printf("[ figure ] density %.1f, collimation %.1f,%s: %.3f px, by eq. 7 %.3f\n", density, collimation,
                     all.c_str(), width, wanted);
         // Rays beside the axis are longer: by 2% two of the widest standard deviations away.
-        EXPECT_NEAR(width / wanted, 1.0, 0.03) << all;
+        EXPECT_NEAR(width / wanted, 1.0, 0.01) << all;
       }
     }
 }
