@@ -37,27 +37,6 @@ bool sameLight(const Request& a, const Request& b) {
   return a.passes == b.passes && a.particleLight == b.particleLight && a.shadows == b.shadows && a.fog == b.fog;
 }
 
-bool overDepth(const std::optional<shading::WeightSettings>& weight) {
-  const DepthWeight* row = weight ? depthWeightOf(weight->kind) : nullptr;
-  return row && row->reference == WeightReference::depth;
-}
-
-// Whether a power of depth needs to know where the layers begin.
-bool asksDepths(const Request& request) {
-  if (request.sums.weightReference) return false;
-  if (fitsWeight(request) || overDepth(request.sums.weight)) return true;
-  const auto* systems = std::get_if<PaintSystems>(&request.paint);
-  return systems && std::any_of(systems->weights.begin(), systems->weights.end(), [](const SystemWeight& each) {
-           return !each.weight || (!each.whole && overDepth(each.weight));
-         });
-}
-
-bool fitsSystems(const Plan& plan) {
-  const auto* systems = plan.as<PaintSystems>();
-  return systems && std::any_of(systems->weights.begin(), systems->weights.end(),
-                                [](const SystemWeight& each) { return !each.weight; });
-}
-
 // The beauty as shadows leave it, for a file of planes; empty where they changed nothing.
 Image<glm::vec4> relitPicture(const Lighting& lighting) {
   Image<glm::vec4> relit;
@@ -246,7 +225,8 @@ Compositor::Run Compositor::prepare(const Request& request) {
     const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
     run.pass.weight = run.plan.pass.weight = fittedWeight(context, moving, run.pass);
   }
-  if (fitsSystems(run.plan)) {
+  const auto* systems = run.plan.as<PaintSystems>();
+  if (systems && fitsAny(*systems)) {
     RunCounts unused;
     const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
     const PaintContext context{run.plan, *shot_, run.lighting->picture, *run.sources, device_, journal_, unused};

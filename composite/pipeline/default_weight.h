@@ -9,5 +9,9 @@ namespace pellucid {
 // it is, in the published tier, which is the papers' picture, in passes for each system, and for planes that hold each
 // other out, which take that of the other planes. A pure function of the request.
 bool fitsWeight(const Request& request);
+// Whether that of some system is.
+bool fitsAny(const PaintSystems& systems);
+// Whether a power of depth needs to know where the layers begin.
+bool asksDepths(const Request& request);
 
 }  // namespace pellucid

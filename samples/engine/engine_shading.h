@@ -46,7 +46,8 @@ vec3 reflectSun(vec3 n, vec3 toEye, vec3 albedo, float ior, float roughness) {
   vec3 h = normalize(toSun + toEye);
   float cosHalf = clamp(dot(n, h), 0.0, 1.0), spread = cosHalf * cosHalf * (a2 - 1.0) + 1.0;
   float density = a2 / (3.14159265 * spread * spread);
-  float visible = 0.5 / (cosLight * sqrt(cosEye * cosEye * (1.0 - a2) + a2) + cosEye * sqrt(cosLight * cosLight * (1.0 - a2) + a2));
+  float visible = 0.5 / (cosLight * sqrt(cosEye * cosEye * (1.0 - a2) + a2) +
+                         cosEye * sqrt(cosLight * cosLight * (1.0 - a2) + a2));
   return (albedo / 3.14159265 + vec3(fresnel(clamp(dot(toEye, h), 0.0, 1.0), ior) * density * visible)) * cosLight;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Refraction through a closed body whose shape is known: a ray is bent where it enters and again where it leaves, so that
-// a ball turns what is behind it upside down and a slab moves it aside. PT17 eqs. 8-10 at both faces.
+// Refraction through a closed body whose shape is known: a ray is bent where it enters and again where it leaves, so
+// that a ball turns what is behind it upside down and a slab moves it aside. PT17 eqs. 8-10 at both faces.
 #include "shared/refraction.glsl"
 
 const int PLD_BODY_NONE = 0;

@@ -18,8 +18,8 @@ struct Medium {
   vec4 ambientRed;    // xyz first order of it about a direction, per channel: radiance is ambient + dot(this, direction)
   vec4 ambientGreen;
   vec4 ambientBlue;
-  vec4 glow;          // rgb radiance that it emits per opacity: what a metre adds over the extinction; a: 1 where a grid
-                      // emits, too
+  vec4 glow;          // rgb radiance that it emits per opacity: what a metre adds over the extinction; a: 1 where a
+                      // grid emits, too
   mat4 boxFromView;   // the box becomes [0,1]^3
 };
 

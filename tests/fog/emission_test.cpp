@@ -220,12 +220,7 @@ TEST(FogEmission, GlMarchesWhatTheCpuMarches) {
           flames.settings.grid = clear;
         }
         const Fog fog = stage.fog(flames.settings, glm::vec3(0.05f));
-        PassSettings settings;
-        OitPlanes cpu = stage.accumulate(settings);
-        cpu.info.weight = settings.weight;
-        addFog(fog, stage.gbuffer, {0.5, 0.5}, cpu);
-        settings.fog = std::make_shared<Fog>(fog);
-        const OitPlanes gl = stage.accumulate(settings);
+        const auto [cpu, gl] = stage.both(fog);
         double worst = 0;
         std::size_t lit = 0;
         const auto compare = [&](const glm::vec4& a, const glm::vec4& b) {

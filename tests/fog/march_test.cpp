@@ -176,12 +176,7 @@ TEST(Fog, GlMarchesWhatTheCpuMarches) {
         fog.visibility = volumeOf(
             stage.camera, shafts.box, {20, 6, 20},
             [](int light, glm::dvec3 p) { return glm::vec3(light ? 1.0f : static_cast<float>(slit(p))); }, 2);
-        PassSettings settings;
-        OitPlanes cpu = stage.accumulate(settings);
-        cpu.info.weight = settings.weight;
-        addFog(fog, stage.gbuffer, {0.5, 0.5}, cpu);
-        settings.fog = std::make_shared<Fog>(fog);
-        const OitPlanes gl = stage.accumulate(settings);
+        const auto [cpu, gl] = stage.both(fog);
         double worst = 0;
         std::size_t words = 0, differ = 0, fogged = 0;
         const auto compare = [&](float a, float b) {

@@ -52,6 +52,20 @@ struct FogStage : Stage {
     addFog(fog, gbuffer, {0.5, 0.5}, planes);
     return planes;
   }
+  // The sums of all layers and the fog, marched by the CPU and by the pass.
+  struct Both {
+    OitPlanes cpu, gl;
+  };
+  Both both(const Fog& fog) {
+    PassSettings settings;
+    Both planes;
+    planes.cpu = accumulate(settings);
+    planes.cpu.info.weight = settings.weight;
+    addFog(fog, gbuffer, {0.5, 0.5}, planes.cpu);
+    settings.fog = std::make_shared<Fog>(fog);
+    planes.gl = accumulate(settings);
+    return planes;
+  }
   Picture picture(const OitPlanes& planes) const { return compose(resolve(planes, {}), gbuffer); }
 };
 
