@@ -39,7 +39,7 @@ const Topic kTopics[] = {
 };
 
 // Rows are "name: text", or "name   text" where names are padded.
-std::string textOf(const Topic& topic) {
+std::string helpTextOf(const Topic& topic) {
   std::string text = std::string(topic.heading) + "\n\n";
   std::istringstream rows(topic.rows());
   for (std::string row; std::getline(rows, row);) {
@@ -59,7 +59,7 @@ void help(const CLI::App& app, const std::string& subject) {
   std::vector<std::string> names;
   for (const Topic& topic : kTopics) {
     if (subject == topic.name) {
-      fmt::print("{}", textOf(topic));
+      fmt::print("{}", helpTextOf(topic));
       return;
     }
     names.emplace_back(topic.name);

@@ -25,7 +25,7 @@ constexpr float kDepths[] = {1e-6f, 0.01f, 3.0f, 1e4f, 1e9f};
 enum class Fold { floats, exact, published };
 constexpr Fold kFolds[] = {Fold::floats, Fold::exact, Fold::published};
 
-FragmentLists onePixel(std::vector<Fragment> fragments) {
+FragmentLists listOf(std::vector<Fragment> fragments) {
   FragmentLists lists;
   lists.window = {0, 0, 1, 1};
   lists.solid = Image<glm::vec4>(1, 1, glm::vec4(0, 0, 0, kSky));
@@ -75,7 +75,7 @@ TEST(Extremes, OneLayerOfEveryKindIsFiniteAndRight) {
         for (const float z : kDepths)
           for (const DepthWeight& row : kDepthWeights) {
             const int kind = row.kind;
-            const FragmentLists lists = onePixel({fragmentOf(coverage, transmission, radiance, z)});
+            const FragmentLists lists = listOf({fragmentOf(coverage, transmission, radiance, z)});
             if (shading::isSolid(coverage, transmission)) continue;  // the solid pass's
             const glm::dvec3 truth = over(sorted(lists), background);
             for (const int normalisation : {shading::PLD_NORMALISE_SPECTRAL, shading::PLD_NORMALISE_PUBLISHED})
@@ -112,7 +112,7 @@ TEST(Extremes, FromOneToAHundredThousandLayers) {
             const float z = coplanar ? 3.0f : static_cast<float>(std::pow(10.0, -6 + 15 * share));
             fragments.push_back(fragmentOf(coverage, glm::vec3(0), radiance, z));
           }
-          const FragmentLists lists = onePixel(std::move(fragments));
+          const FragmentLists lists = listOf(std::move(fragments));
           const double beta = std::exp(count * std::log1p(-static_cast<double>(coverage)));
           for (const Fold fold : kFolds)
             for (const int kind : {shading::PLD_WEIGHT_EQ5, shading::PLD_WEIGHT_POWER, shading::PLD_WEIGHT_EQ10Z}) {
@@ -143,13 +143,13 @@ TEST(Extremes, CoincidentLayersAndLayersOnTheBackgroundAreFiniteInAnyOrder) {
     for (std::uint32_t i = 0; i < 2 + random.below(6); ++i)
       fragments.push_back(fragmentOf(kCoverages[random.below(4)], kTransmissions[1 + random.below(3)],
                                      kRadiances[random.below(5)], kDepths[turn % 5]));
-    const Veil one = folded(Fold::exact, onePixel(fragments), weightOf(shading::PLD_WEIGHT_EQ5), 0);
-    const Veil truth = sorted(onePixel(fragments));
+    const Veil one = folded(Fold::exact, listOf(fragments), weightOf(shading::PLD_WEIGHT_EQ5), 0);
+    const Veil truth = sorted(listOf(fragments));
     std::reverse(fragments.begin(), fragments.end());
-    const Veil two = folded(Fold::exact, onePixel(fragments), weightOf(shading::PLD_WEIGHT_EQ5), 0);
+    const Veil two = folded(Fold::exact, listOf(fragments), weightOf(shading::PLD_WEIGHT_EQ5), 0);
     EXPECT_EQ(one.light[0], two.light[0]);
     EXPECT_EQ(one.transmission[0], two.transmission[0]);
-    EXPECT_EQ(truth.light[0], sorted(onePixel(fragments)).light[0]);
+    EXPECT_EQ(truth.light[0], sorted(listOf(fragments)).light[0]);
     for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(one.light[0][c]) && std::isfinite(truth.light[0][c]));
   }
 }

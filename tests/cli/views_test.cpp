@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 using nlohmann::json;
 
-constexpr int kSize = 16;
+constexpr int kViewSize = 16;
 
 class Views : public ::testing::Test {
  protected:
@@ -30,15 +30,15 @@ class Views : public ::testing::Test {
   std::string at(const std::string& name) const { return options.folder + "/" + name; }
 
   static ExrChannel plane(const std::string& name, float value) {
-    ExrChannel channel{name, PixelType::float32, std::vector<std::byte>(kSize * kSize * sizeof(float))};
-    for (std::size_t i = 0; i < kSize * kSize; ++i)
+    ExrChannel channel{name, PixelType::float32, std::vector<std::byte>(kViewSize * kViewSize * sizeof(float))};
+    for (std::size_t i = 0; i < kViewSize * kViewSize; ++i)
       std::memcpy(channel.bytes.data() + i * sizeof value, &value, sizeof value);
     return channel;
   }
   static NewExr viewPart(const std::string& view, double eye, bool withCamera) {
     NewExr part;
     part.part = "rgba." + view;
-    part.display = part.data = {0, 0, kSize, kSize};
+    part.display = part.data = {0, 0, kViewSize, kViewSize};
     part.attributes["view"] = view;
     for (const char* name : {"R", "G", "B"}) part.channels.push_back(plane(name, .25f));
     part.channels.push_back(plane("Z", 10));

@@ -11,7 +11,7 @@
 namespace pellucid::test {
 namespace {
 
-constexpr int kEdge = 24, kLeft = 7, kRight = 17, kRow = 12;
+constexpr int kPictureEdge = 24, kLeft = 7, kRight = 17, kRow = 12;
 constexpr float kStrength[] = {0.25f, 0.75f};
 const glm::vec3 kTint[] = {{1.0f, 0.5f, 0.25f}, {0.2f, 0.9f, 0.6f}};
 
@@ -19,7 +19,7 @@ enum class Given { factors, textures };
 
 // A pane, its halves apart: what the left and right half's factors say, as factors of two panes or as texels of one.
 Stage panes(Given given, bool transparent) {
-  Stage stage(kEdge, kEdge);
+  Stage stage(kPictureEdge, kPictureEdge);
   Material material;
   material.metallic = 0.0f;
   material.roughness = 0.3f;
@@ -44,13 +44,13 @@ Stage panes(Given given, bool transparent) {
     material.specularTexture.texture = 0;
     material.specularColorTexture.texture = 1;
     material.specularColorTexture.uvTransform = glm::mat3(-1, 0, 0, 0, 1, 0, 1, 0, 1);  // u' = 1 - u
-    stage.quad(2, 2, kEdge - 2, kEdge - 2, 3.0, stage.add(material));
+    stage.quad(2, 2, kPictureEdge - 2, kPictureEdge - 2, 3.0, stage.add(material));
   } else {
     for (int half = 0; half < 2; ++half) {
       material.specular = kStrength[half];
       material.specularColor = kTint[half];
-      const int middle = kEdge / 2;
-      stage.quad(half ? middle : 2, 2, half ? kEdge - 2 : middle, kEdge - 2, 3.0, stage.add(material));
+      const int middle = kPictureEdge / 2;
+      stage.quad(half ? middle : 2, 2, half ? kPictureEdge - 2 : middle, kPictureEdge - 2, 3.0, stage.add(material));
     }
   }
   return stage;

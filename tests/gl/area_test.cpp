@@ -11,10 +11,10 @@
 namespace pellucid::test {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kAreaWidth = 160, kAreaHeight = 120;
 
 Stage stageOf(Random& random, bool orthographic) {
-  Stage stage(kWidth, kHeight);
+  Stage stage(kAreaWidth, kAreaHeight);
   stage.camera.orthographic = orthographic;
   Material glass = unlitBlend(glm::vec3(0.2f, 0.6f, 0.9f), 0.4f);
   Material solid = unlitBlend(glm::vec3(0.9f), 1.0f);
@@ -53,12 +53,12 @@ TEST(PassArea, SumsAreThoseOfTheWholePicture) {
 
 // Fragments of a pixel, in no order.
 std::vector<std::vector<float>> depthsOf(Stage& stage, const PassSettings& settings, bool lean) {
-  std::vector<std::vector<float>> depths(kWidth * kHeight);
+  std::vector<std::vector<float>> depths(kAreaWidth * kAreaHeight);
   GlContext context;
   TransparentPass pass(context, stage.scene, stage.gbuffer, stage.camera);
   const auto add = [&](const Window& window, std::size_t pixel, float z) {
     const int width = window.width(), i = static_cast<int>(pixel);
-    depths[static_cast<std::size_t>((window.y0 + i / width) * kWidth + window.x0 + i % width)].push_back(z);
+    depths[static_cast<std::size_t>((window.y0 + i / width) * kAreaWidth + window.x0 + i % width)].push_back(z);
   };
   if (lean)
     pass.leanFragments(settings, [&](const LeanLists& lists) {
@@ -86,10 +86,10 @@ TEST(PassArea, ListsAreThoseOfTheWholePicture) {
       const auto whole = depthsOf(stage, settings, lean);
       settings.area = {41, 22, 117, 77};
       const auto part = depthsOf(stage, settings, lean);
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
+      for (int y = 0; y < kAreaHeight; ++y)
+        for (int x = 0; x < kAreaWidth; ++x) {
           const bool inside = x >= 41 && x < 117 && y >= 22 && y < 77;
-          const auto pixel = static_cast<std::size_t>(y * kWidth + x);
+          const auto pixel = static_cast<std::size_t>(y * kAreaWidth + x);
           ASSERT_EQ(part[pixel], inside ? whole[pixel] : std::vector<float>()) << x << ", " << y;
         }
     }
@@ -100,14 +100,14 @@ TEST(PassArea, BoundsHoldWhateverAnySampleMeets) {
   for (int round = 0; round < 6; ++round) {
     Stage stage = stageOf(random, round % 2 == 1);
     const Window bounds = screenBounds(stage.scene, stage.camera, stage.gbuffer);
-    EXPECT_LT(bounds.width() * bounds.height(), kWidth * kHeight);
+    EXPECT_LT(bounds.width() * bounds.height(), kAreaWidth * kAreaHeight);
     for (const glm::dvec2 sample : {glm::dvec2(0.0), glm::dvec2(0.999), glm::dvec2(0.5)}) {
       PassSettings settings;
       settings.sample = sample;
       const auto depths = depthsOf(stage, settings, false);
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-          if (!depths[static_cast<std::size_t>(y * kWidth + x)].empty()) {
+      for (int y = 0; y < kAreaHeight; ++y)
+        for (int x = 0; x < kAreaWidth; ++x)
+          if (!depths[static_cast<std::size_t>(y * kAreaWidth + x)].empty()) {
             ASSERT_TRUE(x >= bounds.x0 && x < bounds.x1 && y >= bounds.y0 && y < bounds.y1) << x << ", " << y;
           }
     }
@@ -115,7 +115,7 @@ TEST(PassArea, BoundsHoldWhateverAnySampleMeets) {
 }
 
 TEST(PassArea, BehindTheEyeNothingIsBounded) {
-  Stage stage(kWidth, kHeight);
+  Stage stage(kAreaWidth, kAreaHeight);
   stage.slanted(10, 10, 20, 20, 3.0, 3.0, stage.add(unlitBlend(glm::vec3(0.5f), 0.5f)));
   EXPECT_LT(screenBounds(stage.scene, stage.camera, stage.gbuffer).width(), 20);
   stage.scene.primitives[0].vertices[0].position.z = 1.0f;

@@ -18,9 +18,15 @@ constexpr int kWidth = 150, kHeight = 100;
 
 using Pixel = std::vector<Fragment>;
 struct Lists {
-  std::vector<Pixel> pixels = std::vector<Pixel>(kWidth * kHeight);
-  std::vector<glm::vec4> solid = std::vector<glm::vec4>(kWidth * kHeight);
-  std::vector<int> visits = std::vector<int>(kWidth * kHeight);
+  explicit Lists(int wide, int high)
+      : width(wide),
+        pixels(static_cast<std::size_t>(wide * high)),
+        solid(pixels.size()),
+        visits(pixels.size()) {}
+  int width;
+  std::vector<Pixel> pixels;
+  std::vector<glm::vec4> solid;
+  std::vector<int> visits;
 };
 
 bool before(const Fragment& a, const Fragment& b) {
@@ -28,13 +34,13 @@ bool before(const Fragment& a, const Fragment& b) {
 }
 
 // One sorted list per pixel, whatever the bands were.
-Lists gather(const std::vector<FragmentLists>& bands) {
-  Lists lists;
+Lists gather(const std::vector<FragmentLists>& bands, int width = kWidth, int height = kHeight) {
+  Lists lists(width, height);
   for (const FragmentLists& band : bands)
     for (int y = band.window.y0; y < band.window.y1; ++y)
       for (int x = band.window.x0; x < band.window.x1; ++x) {
         const auto local = static_cast<std::size_t>((y - band.window.y0) * band.window.width() + x - band.window.x0);
-        const auto pixel = static_cast<std::size_t>(y * kWidth + x);
+        const auto pixel = static_cast<std::size_t>(y * lists.width + x);
         ++lists.visits[pixel];
         lists.solid[pixel] = band.solid[local];
         lists.pixels[pixel].assign(band.fragments.begin() + static_cast<std::ptrdiff_t>(band.offsets[local]),
@@ -70,16 +76,18 @@ void expectSameBits(const glm::vec4& a, const glm::vec4& b) {
   ASSERT_EQ(std::memcmp(&a, &b, sizeof(a)), 0);
 }
 
+// Half the edge of the others' picture: with 4 KiB there are some hundred bands, each drawn in some dozen chunks.
 TEST(Invariance, FragmentSetsAreIdentical) {
-  Stage stage = clutter(kWidth, kHeight, 120);
-  const Lists plain = gather(stage.fragments(variations()[0]));
+  constexpr int kWide = kWidth / 2, kHigh = kHeight / 2;
+  Stage stage = clutter(kWide, kHigh, 120);
+  const Lists plain = gather(stage.fragments(variations()[0]), kWide, kHigh);
   std::size_t total = 0, deepest = 0;
   for (const Pixel& pixel : plain.pixels) total += pixel.size(), deepest = std::max(deepest, pixel.size());
   std::printf("fragments %zu, deepest pixel %zu\n", total, deepest);
   ASSERT_GT(deepest, 8u);
   std::size_t mostChunks = 0, mostBands = 0;
   for (const PassSettings& settings : variations()) {
-    const Lists lists = gather(stage.fragments(settings));
+    const Lists lists = gather(stage.fragments(settings), kWide, kHigh);
     mostChunks = std::max(mostChunks, stage.statistics.chunks);
     mostBands = std::max(mostBands, stage.statistics.tiles);
     EXPECT_EQ(stage.statistics.fragments, total);

@@ -8,12 +8,12 @@
 namespace pellucid::test {
 namespace {
 
-constexpr int kWidth = 1920, kHeight = 1080, kLayers = 8;
+constexpr int kFrameWidth = 1920, kFrameHeight = 1080, kLayers = 8;
 
 void report(const char* what, const Material& material, bool lights) {
-  Stage stage(kWidth, kHeight);
+  Stage stage(kFrameWidth, kFrameHeight);
   const int index = stage.add(material);
-  for (int i = 0; i < kLayers; ++i) stage.quad(0, 0, kWidth, kHeight, 2.0 + i, index);
+  for (int i = 0; i < kLayers; ++i) stage.quad(0, 0, kFrameWidth, kFrameHeight, 2.0 + i, index);
   for (int i = 0; lights && i < 3; ++i) {
     Light light;
     light.intensity = 1.0f;
@@ -34,9 +34,9 @@ void report(const char* what, const Material& material, bool lights) {
     std::size_t fragments = 0;
     pass.fragments(settings, [&](const FragmentLists& tile) { fragments += tile.fragments.size(); });
     lists = std::min(lists, pass.statistics().seconds);
-    ASSERT_EQ(fragments, std::size_t{kLayers} * kWidth * kHeight);
+    ASSERT_EQ(fragments, std::size_t{kLayers} * kFrameWidth * kFrameHeight);
   }
-  std::printf("%d full-screen layers at %dx%d, %s: planes %.0f ms, lists %.0f ms\n", kLayers, kWidth, kHeight, what,
+  std::printf("%d full-screen layers at %dx%d, %s: planes %.0f ms, lists %.0f ms\n", kLayers, kFrameWidth, kFrameHeight, what,
               sums * 1e3, lists * 1e3);
 }
 

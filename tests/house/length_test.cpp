@@ -22,7 +22,7 @@ const Allowances kLongFunctions = {
 };
 const Allowances kLongFiles = {};
 
-std::string told(const Violations& violations) {
+std::string lengthsTold(const Violations& violations) {
   std::string out;
   for (const std::string& sentence : violations) out += sentence + "\n";
   return out;
@@ -43,7 +43,7 @@ TEST(House, FunctionsAreReadAtOnce) {
       ++functions;
       if (function.lines > kFunction) unused.erase(file.path + " " + function.name);
     }
-    all += told(longFunctions(file, kFunction, kLongFunctions));
+    all += lengthsTold(longFunctions(file, kFunction, kLongFunctions));
   }
   EXPECT_EQ(all, "");
   for (const auto& [name, lines] : unused) ADD_FAILURE() << name << " needs no row any more: take it out of the list";
@@ -55,7 +55,7 @@ TEST(House, FilesOfTheCommandLineAreShort) {
   Allowances unused = kLongFiles;
   for (const SourceFile& file : sourceFiles()) {
     if (roomOf(file.path) != "composite/cli") continue;
-    all += told(longFiles(file, kCommandFile, kLongFiles));
+    all += lengthsTold(longFiles(file, kCommandFile, kLongFiles));
     if (std::count(file.text.begin(), file.text.end(), '\n') > kCommandFile) unused.erase(file.path);
   }
   EXPECT_EQ(all, "");

@@ -49,10 +49,10 @@ struct Foliage {
   }
 };
 
-const std::vector<std::string> kSky{"--environment", "0.34,0.37,0.42"};
+const std::vector<std::string> kSkyFlags{"--environment", "0.34,0.37,0.42"};
 
 std::vector<std::string> with(std::vector<std::string> more) {
-  more.insert(more.end(), kSky.begin(), kSky.end());
+  more.insert(more.end(), kSkyFlags.begin(), kSkyFlags.end());
   return more;
 }
 

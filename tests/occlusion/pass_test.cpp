@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kOpenSky = std::numeric_limits<float>::infinity();
 
 template <class T>
 bool sameBits(const Image<T>& a, const Image<T>& b) {
@@ -220,7 +220,7 @@ TEST(OcclusionPass, GlInfersWhatTheTruthTestsMeasure) {
   GlContext context;
   TransparentPass pass(context, stage.scene, stage.gbuffer, stage.camera);
   const auto nearest = [&](const PassSettings& how) {
-    Image<glm::vec3> front(occluders.viewZ.width(), occluders.viewZ.height(), glm::vec3(0, 0, kInfinity));
+    Image<glm::vec3> front(occluders.viewZ.width(), occluders.viewZ.height(), glm::vec3(0, 0, kOpenSky));
     pass.fragments(how, [&](const FragmentLists& lists) {
       for (int y = lists.window.y0; y < lists.window.y1; ++y)
         for (int x = lists.window.x0; x < lists.window.x1; ++x) {

@@ -12,7 +12,7 @@
 namespace pellucid {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoDepth = std::numeric_limits<float>::infinity();
 
 struct Shot {
   Window window{0, 0, 192, 128};
@@ -23,7 +23,7 @@ struct Shot {
     const double nx = (2.0 * (x + 0.5) / window.width() - 1.0) / camera.focal.x,
                  ny = (1.0 - 2.0 * (y + 0.5) / window.height()) / camera.focal.y;
     const double z = d / (n.x * nx + n.y * ny - n.z);
-    return z > 0.0 ? static_cast<float>(z) : kInfinity;
+    return z > 0.0 ? static_cast<float>(z) : kNoDepth;
   }
 };
 
@@ -70,7 +70,7 @@ TEST(ScreenOcclusion, ACornerIsHalfOpen) {
 
 Image<float> clutter(double scale) {
   test::Random random(3);
-  Image<float> z(192, 128, kInfinity);
+  Image<float> z(192, 128, kNoDepth);
   for (int i = 0; i < 60; ++i) {
     const int x0 = static_cast<int>(random.below(170)), y0 = static_cast<int>(random.below(110));
     const float depth = static_cast<float>(scale * random.between(3.0, 4.0));

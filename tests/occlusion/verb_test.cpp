@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kSkyDepth = std::numeric_limits<float>::infinity();
 
 // A foliage layer and its opaque picture, small and by hand: a leaf from column 10 to 19, its rims at 9 and 20.
 struct LeafFiles {
@@ -59,7 +59,7 @@ struct LeafFiles {
                            plane([&](int x, int y) { return (0.5f + 0.1f * static_cast<float>(c)) * coverage(x, y); }));
     if (withAlpha) foliage.emplace_back("A", plane([&](int x, int y) { return coverage(x, y); }));
     if (withDepth)
-      foliage.emplace_back("Z", plane([&](int x, int y) { return coverage(x, y) > 0 ? layerZ : kInfinity; }));
+      foliage.emplace_back("Z", plane([&](int x, int y) { return coverage(x, y) > 0 ? layerZ : kSkyDepth; }));
     std::vector<ExtraLayer> layers{{"", foliage}};
     if (withIndirect) {
       ExtraLayer indirect{"indirect", {}};
@@ -184,8 +184,8 @@ TEST(OcclusionVerb, WhatIsMissingIsNamed) {
 
 TEST(OcclusionVerb, SkyAloneLeavesTheLayerAsItWas) {
   LeafFiles files("sky");
-  files.opaqueZ = files.skyZ = kInfinity;
-  files.layerZ = kInfinity;
+  files.opaqueZ = files.skyZ = kSkyDepth;
+  files.layerZ = kSkyDepth;
   files.write();
   const Ended ended = files.run();
   ASSERT_EQ(ended.code, 0) << ended.err;
@@ -210,7 +210,7 @@ TEST(OcclusionVerb, OnePixelOfFoliageStaysOpen) {
                  {"G", only(0.2f, 0)},
                  {"B", only(0.2f, 0)},
                  {"A", only(0.5f, 0)},
-                 {"Z", only(2.0f, kInfinity)}}}});
+                 {"Z", only(2.0f, kSkyDepth)}}}});
   writeLayers(
       files.opaque, window, window,
       {{"", {{"R", only(0, 0)}, {"G", only(0, 0)}, {"B", only(0, 0)}, {"Z", only(50, 50)}, {"AO", only(0.1f, 0.1f)}}}});

@@ -10,7 +10,7 @@
 namespace pellucid::test {
 namespace {
 
-constexpr double kDegrees = 0.017453292519943295;
+constexpr double kRadiansPerDegree = 0.017453292519943295;
 
 class Mended : public ::testing::Test {
  protected:
@@ -46,7 +46,7 @@ TEST_F(Mended, LabelsOnSurfacesSeenFarAslant) {
     Random random(100 + i);
     SceneMaker maker("decals", random, 10.0);
     maker.look(26, 22, 0.4);
-    const double tilt = (81.0 + 0.4 * static_cast<double>(i)) * kDegrees;
+    const double tilt = (81.0 + 0.4 * static_cast<double>(i)) * kRadiansPerDegree;
     const Vec3 normal(0.0, std::sin(tilt), std::cos(tilt)), middle = maker.at(0, -0.2, 10.0);
     const int floor = maker.plane(middle, normal);
     maker.placeOn({floor, 0}, quadSheet(8.0, 8.0), middle, facing(normal, 0.3 * static_cast<double>(i)));
@@ -63,7 +63,7 @@ TEST_F(Mended, WhatLiesBehindAWallAboveASteepFloor) {
       SceneMaker maker("contact", random, 5.0);
       maker.look(24, 24, 0.4);
       maker.plane(maker.at(0, 0, 5.0), {0.05 * static_cast<double>(i), 0, 1});
-      const double tilt = (81.0 + 0.5 * static_cast<double>(i)) * kDegrees;
+      const double tilt = (81.0 + 0.5 * static_cast<double>(i)) * kRadiansPerDegree;
       maker.plane(maker.at(0, 0.1, 5.0), {0.2, std::sin(tilt), std::cos(tilt)});
       pane(maker, 6.0, {0.1, 0.9, 0.2}, 0.75);
       expectRight(maker, flagsOf(passes));
@@ -106,7 +106,7 @@ TEST_F(Mended, PanesThroughTheEyesPlaneOfParallelRays) {
     SceneMaker maker("meshes", random, 100.0);
     maker.look(36, 28, 50.0, true);
     maker.plane(maker.at(0, 0, 200.0), {0, 0, 1});
-    const double steep = (80.0 + static_cast<double>(i)) * kDegrees, spin = 0.7 * static_cast<double>(i);
+    const double steep = (80.0 + static_cast<double>(i)) * kRadiansPerDegree, spin = 0.7 * static_cast<double>(i);
     const Vec3 normal(std::sin(steep) * std::cos(spin), std::sin(steep) * std::sin(spin), std::cos(steep));
     PlacedMesh& mesh = maker.place(quadSheet(400.0, 400.0), maker.at(0.01, 0.02, 0.0), facing(normal, 0.3));
     mesh.coat.colour = {0.1, 0.8, 0.3, 0.75};

@@ -19,7 +19,7 @@ constexpr double kContrast = 1.0 / 8;  // of two colours, as a part of the brigh
 constexpr double kApart = 1.0 / 128;   // of two faces, as a part of their depth
 constexpr double kWholeAlpha = 1.0 / 64;
 constexpr double kNoShare = 1.0 / 4096;
-constexpr double kRounding = 3e-5;
+constexpr double kEdgeRounding = 3e-5;
 
 }  // namespace
 
@@ -95,7 +95,7 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
   const double stored = flags_.form.half ? 0x1p-11 * (glm::length(ownColour) + glm::length(otherColour)) : 0.0;
   // Either colour is off by as much, or by three times that where it is continued from farther off.
   const double astray = kNoShare + 6.0 * (impurity + stored) / contrast;
-  Statement statement{Judged::edge, samples_.mean(x, y, &Sampled::value), Vec4(kRounding + stored), {}};
+  Statement statement{Judged::edge, samples_.mean(x, y, &Sampled::value), Vec4(kEdgeRounding + stored), {}};
   // What layers show and what shines through them may be dealt by shares that are astray, each by itself.
   const Vec4 brightest = glm::max(glm::max(ranges[0].high, ranges[1].high), glm::max(ownColour, otherColour));
   statement.allowed +=
@@ -150,7 +150,7 @@ Statement Statements::mixedAt(int x, int y) const {
   Range all;
   all.take(with(light.low, passed.low));
   all.take(with(light.high, passed.high));
-  Statement statement{Judged::mixed, 0.5 * (all.low + all.high), 0.5 * (all.high - all.low) + kRounding, {}};
+  Statement statement{Judged::mixed, 0.5 * (all.low + all.high), 0.5 * (all.high - all.low) + kEdgeRounding, {}};
   return statement;
 }
 

@@ -22,10 +22,10 @@ namespace {
 using namespace test;
 using nlohmann::json;
 
-constexpr int kSize = 64;
+constexpr int kBlurSize = 64;
 constexpr double kPerMetre = 16.0;  // pixels at the card's distance: the picture is z metres high at distance z
 constexpr double kCardZ = 4.0;
-const float kNothing = std::numeric_limits<float>::infinity();
+const float kNoDepth = std::numeric_limits<float>::infinity();
 
 std::string base64(const std::string& bytes) {
   const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -92,11 +92,11 @@ class Blur : public ::testing::Test {
 
   // Black all over, of one depth.
   //   rows  in the middle of the picture, which alone are there
-  void writePicture(float z, int rows = kSize) const {
-    const Image<float> black(kSize, rows, 0.0f), one(kSize, rows, 1.0f);
-    const Window window{0, 0, kSize, kSize}, data{0, (kSize - rows) / 2, kSize, (kSize + rows) / 2};
+  void writePicture(float z, int rows = kBlurSize) const {
+    const Image<float> black(kBlurSize, rows, 0.0f), one(kBlurSize, rows, 1.0f);
+    const Window window{0, 0, kBlurSize, kBlurSize}, data{0, (kBlurSize - rows) / 2, kBlurSize, (kBlurSize + rows) / 2};
     writeLayers(folder + "/black.exr", window, data,
-                {{"", {{"R", black}, {"G", black}, {"B", black}, {"A", one}, {"Z", Image<float>(kSize, rows, z)}}}});
+                {{"", {{"R", black}, {"G", black}, {"B", black}, {"A", one}, {"Z", Image<float>(kBlurSize, rows, z)}}}});
   }
   Request request(int passes) const {
     Request request = requestOf(folder + "/black.exr", folder + "/card.gltf");
@@ -143,7 +143,7 @@ TEST_F(Blur, ACrossingPaneHasABoxBlurredEdge) {
   card.left = 0.11;
   card.cardMoves = 10.0 / kPerMetre;  // pixels a frame
   card.write(folder + "/card.gltf");
-  writePicture(kNothing, 2);
+  writePicture(kNoDepth, 2);
   for (const auto& [open, close] : {std::pair(-0.5, 0.5), std::pair(-0.25, 0.25), std::pair(0.0, 1.0)}) {
     Request blurred = request(kManyPasses);
     blurred.shutter = Shutter{open, close, false};
@@ -152,8 +152,8 @@ TEST_F(Blur, ACrossingPaneHasABoxBlurredEdge) {
     // Where the edge lies in the middle of the shutter.
     double lit = 0;
     for (std::size_t i = 0; i < picture.size(); ++i) lit += static_cast<double>(picture[i].r) / picture.height();
-    const double edge = kSize / 2 + 0.11 * kPerMetre + 10.0 * 0.5 * (open + close);
-    EXPECT_NEAR(lit, kSize - edge, 0.01) << open << ":" << close;
+    const double edge = kBlurSize / 2 + 0.11 * kPerMetre + 10.0 * 0.5 * (open + close);
+    EXPECT_NEAR(lit, kBlurSize - edge, 0.01) << open << ":" << close;
   }
 }
 
@@ -161,7 +161,7 @@ TEST_F(Blur, TheCameraBlursAsMuchTheOtherWay) {
   Card card;
   card.cameraMoves = -10.0 / kPerMetre;
   card.write(folder + "/card.gltf");
-  writePicture(kNothing, 2);
+  writePicture(kNoDepth, 2);
   Request blurred = request(kManyPasses);
   blurred.shutter = Shutter{-0.5, 0.5, false};
   EXPECT_NEAR(boxWidth(run(blurred), boxEdgePixel), 10.0, 0.01);
@@ -173,15 +173,15 @@ TEST_F(Blur, ErrorFallsWithThePasses) {
   Card card;
   card.cardMoves = 10.0 / kPerMetre;
   card.write(folder + "/card.gltf");
-  writePicture(kNothing);
+  writePicture(kNoDepth);
   double last = 1.0;
   for (const int passes : {4, 16, 64}) {
     Request blurred = request(passes);
     blurred.shutter = Shutter{-0.5, 0.5, false};
     const Image<glm::vec4> picture = run(blurred);
     double worst = 0;
-    for (int x = 0; x < kSize; ++x) {
-      worst = std::max(worst, std::abs(static_cast<double>(picture.at(x, 5).r) - boxEdgePixel(x, kSize / 2, 10.0)));
+    for (int x = 0; x < kBlurSize; ++x) {
+      worst = std::max(worst, std::abs(static_cast<double>(picture.at(x, 5).r) - boxEdgePixel(x, kBlurSize / 2, 10.0)));
     }
     EXPECT_LT(worst, 0.6 * last) << passes;
     last = worst;
@@ -195,7 +195,7 @@ TEST_F(Blur, APointOutOfFocusIsADisc) {
   card.bottom = -1.0 / kPerMetre + 0.007;
   card.width = card.height = 2.0 / kPerMetre;  // two pixels
   card.write(folder + "/card.gltf");
-  writePicture(kNothing);
+  writePicture(kNoDepth);
   const Moments sharp = momentsOf(run(request(256)));
   EXPECT_NEAR(sharp.sum, 4.0, 4e-3);
   for (const double focus : {8.0, 2.5, 1e6}) {
@@ -204,7 +204,7 @@ TEST_F(Blur, APointOutOfFocusIsADisc) {
     blurred.lens.focus = focus;
     const Moments disc = momentsOf(run(blurred));
     EXPECT_NEAR(disc.sum / sharp.sum, 1.0, 1e-3) << "highlights keep their energy";
-    const double right = kSize * std::abs(1.0 / kCardZ - 1.0 / focus);
+    const double right = kBlurSize * std::abs(1.0 / kCardZ - 1.0 / focus);
     // A disc has a quarter of its radius squared along each axis.
     const glm::dvec2 spread = disc.variance - sharp.variance;
     EXPECT_NEAR(std::sqrt(2.0 * (spread.x + spread.y)), right, 0.1) << focus;
@@ -257,10 +257,10 @@ TEST_F(Blur, TheShotStandsAsItStoodAfterwards) {
 // What stands before the card hides it from every point of the lens, by its own depth as that point has it.
 TEST_F(Blur, TheOpaqueDepthIsSeenThroughTheLens) {
   GBuffer gbuffer;
-  gbuffer.display = gbuffer.data = {0, 0, kSize, kSize};
-  gbuffer.viewZ = Image<float>(kSize, kSize, 8.0f);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize / 2; ++x) gbuffer.viewZ.at(x, y) = 2.0f;
+  gbuffer.display = gbuffer.data = {0, 0, kBlurSize, kBlurSize};
+  gbuffer.viewZ = Image<float>(kBlurSize, kBlurSize, 8.0f);
+  for (int y = 0; y < kBlurSize; ++y)
+    for (int x = 0; x < kBlurSize / 2; ++x) gbuffer.viewZ.at(x, y) = 2.0f;
   Camera camera;
   camera.focal = {2.0, 2.0};
   const DepthPlanes planes(gbuffer, camera);
@@ -269,11 +269,11 @@ TEST_F(Blur, TheOpaqueDepthIsSeenThroughTheLens) {
   lens.focus = 4.0;
   for (const double at : {-0.5, 0.25, 0.5}) {
     const Camera from = throughLens(camera, lens, {at, 0.0});
-    Image<float> moved(kSize, kSize);
+    Image<float> moved(kBlurSize, kBlurSize);
     depthFrom(planes, gbuffer, camera, from, {0.5, 0.5}, moved);
     // Nearer than what is in focus things go against the lens: an edge at the middle of the picture by this.
-    const double shift = kSize * at * (1.0 / lens.focus - 1.0 / 2.0), edge = kSize / 2 + shift;
-    for (int x = 0; x < kSize; ++x) {
+    const double shift = kBlurSize * at * (1.0 / lens.focus - 1.0 / 2.0), edge = kBlurSize / 2 + shift;
+    for (int x = 0; x < kBlurSize; ++x) {
       if (std::abs(x + 0.5 - edge) < 0.51) continue;
       // Farther things go with it, and uncover nothing where they follow.
       EXPECT_NEAR(moved.at(x, 20), x + 0.5 < edge ? 2.0f : 8.0f, 1e-4f) << at << " " << x;

@@ -16,8 +16,8 @@ namespace {
 
 using namespace test;
 
-constexpr int kSize = 24;
-constexpr float kNothing = std::numeric_limits<float>::infinity();
+constexpr int kContactSize = 24;
+constexpr float kNoSurface = std::numeric_limits<float>::infinity();
 constexpr glm::dvec3 kColour{0.2, 0.4, 0.6};
 
 struct Wall {
@@ -29,14 +29,14 @@ struct Wall {
 // The picture of the wall, or of nothing at all, as the camera of writeGlb() sees it.
 void writeWall(const std::string& path, const Wall& wall, bool there) {
   const double t = wall.tilt * M_PI / 180.0;
-  Image<float> z(kSize, kSize);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      const double across = (x + 0.5) / kSize - 0.5, facing = std::cos(t) - std::sin(t) * across;
-      z.at(x, y) = there && facing > 0.0 ? static_cast<float>(wall.distance * std::cos(t) / facing) : kNothing;
+  Image<float> z(kContactSize, kContactSize);
+  for (int y = 0; y < kContactSize; ++y)
+    for (int x = 0; x < kContactSize; ++x) {
+      const double across = (x + 0.5) / kContactSize - 0.5, facing = std::cos(t) - std::sin(t) * across;
+      z.at(x, y) = there && facing > 0.0 ? static_cast<float>(wall.distance * std::cos(t) / facing) : kNoSurface;
     }
-  const auto plane = [](double value) { return Image<float>(kSize, kSize, static_cast<float>(value)); };
-  const Window window{0, 0, kSize, kSize};
+  const auto plane = [](double value) { return Image<float>(kContactSize, kContactSize, static_cast<float>(value)); };
+  const Window window{0, 0, kContactSize, kContactSize};
   writeLayers(path, window, window,
               {{"", {{"R", plane(kColour.r)}, {"G", plane(kColour.g)}, {"B", plane(kColour.b)}, {"Z", z}}}}, {},
               nullptr, wall.half);

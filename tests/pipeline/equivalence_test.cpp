@@ -31,7 +31,7 @@ Image<glm::vec4> pictureOf(const Request& request) {
   return compositor.run(request).picture.rgba;
 }
 
-double largestDifference(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
+double largestGap(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
   EXPECT_EQ(a.size(), b.size());
   double largest = 0.0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -46,14 +46,14 @@ void askFog(Request& request) {
   request.fog.text->hasDensity = true;
 }
 
-const char* const kMethods[] = {"phenomenological", "weighted", "blended",   "over",       "sum",
+const char* const kEveryMethod[] = {"phenomenological", "weighted", "blended",   "over",       "sum",
                                 "average",          "listing3", "mlab:4",    "front+tail", "wavelet:2",
                                 "moments:4",        "unsorted", "stochastic"};
 
 TEST_F(Equivalence, ADeepPictureOfOneSampleIsTheFlatOne) {
   for (const bool fog : {false, true})
     for (const Tier tier : {Tier::float32, Tier::exact})
-      for (const char* method : kMethods) {
+      for (const char* method : kEveryMethod) {
         if (tier == Tier::exact && std::string(method) == "unsorted") continue;
         Request flat = requestOf(files.flat, files.scene), deep = requestOf(files.deepWall, files.scene);
         for (Request* request : {&flat, &deep}) {
@@ -64,7 +64,7 @@ TEST_F(Equivalence, ADeepPictureOfOneSampleIsTheFlatOne) {
         }
         SCOPED_TRACE(std::string(method) + (fog ? ", fog" : "") + (tier == Tier::exact ? ", exact" : ""));
         // Floats: a veil of shares against one of a pixel, each rounded once or twice.
-        EXPECT_LE(largestDifference(pictureOf(flat), pictureOf(deep)), 4e-6);
+        EXPECT_LE(largestGap(pictureOf(flat), pictureOf(deep)), 4e-6);
       }
 }
 
@@ -84,7 +84,7 @@ TEST_F(Equivalence, SystemsOverADeepPictureAreHeldOutBySamples) {
       Request systems = sorted;
       systems.paint = PaintSystems{SystemRule::file, std::nullopt};
       SCOPED_TRACE(opaque + (fog ? ", fog" : ""));
-      EXPECT_LE(largestDifference(pictureOf(sorted), pictureOf(systems)), 4e-6);
+      EXPECT_LE(largestGap(pictureOf(sorted), pictureOf(systems)), 4e-6);
     }
 }
 
@@ -105,7 +105,7 @@ TEST_F(Equivalence, FogOverADeepPictureIsHeldOutBySamples) {
 
 TEST_F(Equivalence, EvenLayersAtLowResolutionAreThoseOfFullResolution) {
   for (const Tier tier : {Tier::float32, Tier::exact, Tier::published})
-    for (const char* method : kMethods) {
+    for (const char* method : kEveryMethod) {
       Request full = requestOf(files.flat, files.unlitScene);
       full.method = method;
       full.paint = paintOf(method);
@@ -119,7 +119,7 @@ TEST_F(Equivalence, EvenLayersAtLowResolutionAreThoseOfFullResolution) {
       low.shot.scene.overrides = {"material_0.lowResolution=true"};
       SCOPED_TRACE(std::string(method) + ", tier " + std::to_string(static_cast<int>(tier)));
       // 8 bits of published: a step of each of its planes.
-      EXPECT_LE(largestDifference(pictureOf(full), pictureOf(low)), tier == Tier::published ? 8e-3 : 2e-6);
+      EXPECT_LE(largestGap(pictureOf(full), pictureOf(low)), tier == Tier::published ? 8e-3 : 2e-6);
     }
 }
 
@@ -134,7 +134,7 @@ TEST_F(Equivalence, TheExactTierKnowsNoOrder) {
       if (seed) request.residency.order = {SubmissionOrder::shuffle, seed};
       const Image<glm::vec4> picture = pictureOf(request);
       if (first.empty()) first = picture;
-      EXPECT_EQ(largestDifference(first, picture), 0.0) << method << ", order " << seed;
+      EXPECT_EQ(largestGap(first, picture), 0.0) << method << ", order " << seed;
     }
   }
 }
@@ -148,7 +148,7 @@ TEST_F(Equivalence, ATolerancesInTheExactTierKnowsNoOrder) {
     if (seed) request.residency.order = {SubmissionOrder::shuffle, seed};
     const Image<glm::vec4> picture = pictureOf(request);
     if (first.empty()) first = picture;
-    EXPECT_EQ(largestDifference(first, picture), 0.0);
+    EXPECT_EQ(largestGap(first, picture), 0.0);
   }
 }
 
@@ -163,7 +163,7 @@ TEST_F(Equivalence, AdaptiveSamplesOfTheDeviceAreThoseOfLists) {
   samples.onDevice = true;
   device.paint = samples;
   // Sums of the device are whole steps of a grid; a lone layer takes a few more sets there, which changes no value.
-  EXPECT_LE(largestDifference(pictureOf(lists), pictureOf(device)), 2e-4);
+  EXPECT_LE(largestGap(pictureOf(lists), pictureOf(device)), 2e-4);
 }
 
 TEST_F(Equivalence, StudyMeasuresWhatCompositeDraws) {

@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kSize = 24;
+constexpr int kFilterSize = 24;
 constexpr double kTurn = 0.37;  // radians, of the edge against the picture's columns
 
 // The filters' densities along one axis as their authors print them, not normalised: nothing of ours.
@@ -65,7 +65,7 @@ class Filters : public ::testing::Test {
   void SetUp() override { folder = freshFolder("pipeline-filters"); }
   std::string path(const char* name) const { return folder + "/" + name; }
 
-  // Left of an edge through the picture's middle stands a white sheet 2 m away; a pixel is 2 / kSize metres there.
+  // Left of an edge through the picture's middle stands a white sheet 2 m away; a pixel is 2 / kFilterSize metres there.
   void writeSheet(const char* name, const char* mode, double turn = kTurn) const {
     const auto c = static_cast<float>(std::cos(turn)), s = static_cast<float>(std::sin(turn));
     nlohmann::json white = unlit(1, 1, 1, 1);
@@ -74,8 +74,8 @@ class Filters : public ::testing::Test {
   }
   // Black, 10 m away.
   void writeWall(const std::map<std::string, std::string>& attributes = {}, const std::string& layer = "") const {
-    const Image<float> black(kSize, kSize, 0.0f), opaque(kSize, kSize, 1.0f), far(kSize, kSize, 10.0f);
-    const Window window{0, 0, kSize, kSize};
+    const Image<float> black(kFilterSize, kFilterSize, 0.0f), opaque(kFilterSize, kFilterSize, 1.0f), far(kFilterSize, kFilterSize, 10.0f);
+    const Window window{0, 0, kFilterSize, kFilterSize};
     const std::string beauty = layer.empty() ? "" : layer + ".Combined";
     std::vector<ExtraLayer> layers{{beauty, {{"R", black}, {"G", black}, {"B", black}, {"A", opaque}}}};
     if (layer.empty())
@@ -91,12 +91,12 @@ class Filters : public ::testing::Test {
   // Distance of the edge from a pixel's centre, along `across`, pixels; the sheet lies where it is positive.
   static glm::dvec2 across() { return {std::cos(kTurn), -std::sin(kTurn)}; }
   static double distanceAt(int x, int y) {
-    return -glm::dot(across(), glm::dvec2(x + 0.5 - kSize / 2, y + 0.5 - kSize / 2));
+    return -glm::dot(across(), glm::dvec2(x + 0.5 - kFilterSize / 2, y + 0.5 - kFilterSize / 2));
   }
   double worst(const Density& density, const std::function<double(int, int)>& white) const {
     double off = 0.0;
-    for (int y = 4; y < kSize - 4; ++y)
-      for (int x = 0; x < kSize; ++x) {
+    for (int y = 4; y < kFilterSize - 4; ++y)
+      for (int x = 0; x < kFilterSize; ++x) {
         const double distance = distanceAt(x, y);
         if (std::abs(distance) > 2.0 * density.radius + 1.0) continue;
         off = std::max(off, std::abs(white(x, y) - belowLine(density, across(), distance)));

@@ -23,26 +23,26 @@ using namespace test;
 
 // A wall that a sun lights from behind the camera, where a card moves across its light: nothing of it is in the
 // picture but its shadow.
-constexpr int kSize = 64, kRows = 2;
+constexpr int kWallSize = 64, kRows = 2;
 constexpr float kWallZ = 8.0f;             // metres; the picture is as high there
-constexpr double kPerMetre = kSize / 8.0;  // pixels on the wall
+constexpr double kWallPerMetre = kWallSize / 8.0;  // pixels on the wall
 constexpr double kPixelsPerFrame = 10.0;
-constexpr double kEdge = 0.11;     // metres, of the card's edge at the frame
+constexpr double kCardEdge = 0.11;     // metres, of the card's edge at the frame
 constexpr int kShadowSamples = 4;  // positions in a pixel that a pass asks at
 
 class MovingShadow : public ::testing::Test {
  protected:
   void SetUp() override {
     folder = freshFolder("pipeline-moving-shadow");
-    const Image<float> light(kSize, kRows, 1.0f), depth(kSize, kRows, kWallZ);
-    const Window window{0, 0, kSize, kSize}, data{0, kSize / 2 - 1, kSize, kSize / 2 + 1};
+    const Image<float> light(kWallSize, kRows, 1.0f), depth(kWallSize, kRows, kWallZ);
+    const Window window{0, 0, kWallSize, kWallSize}, data{0, kWallSize / 2 - 1, kWallSize, kWallSize / 2 + 1};
     const std::vector<std::pair<std::string, Image<float>>> lit{{"R", light}, {"G", light}, {"B", light}};
     auto beauty = lit;
     beauty.insert(beauty.end(), {{"A", light}, {"Z", depth}});
     writeLayers(folder + "/wall.exr", window, data, {{"", beauty}, {"light.sun", lit}});
 
-    const auto perSecond = static_cast<float>(kPixelsPerFrame / kPerMetre * 24.0);
-    const float width = 6.0f, right = static_cast<float>(kEdge) - 0.5f * perSecond;  // the frame is at half a second
+    const auto perSecond = static_cast<float>(kPixelsPerFrame / kWallPerMetre * 24.0);
+    const float width = 6.0f, right = static_cast<float>(kCardEdge) - 0.5f * perSecond;  // the frame is at half a second
     GlbOptions options;
     options.motions = {{0, {perSecond, 0.0f, 0.0f}}};
     options.extra = {
@@ -97,8 +97,8 @@ void expectEdge(const Image<glm::vec4>& picture, const Positions& positions, dou
     return sum / kShadowSamples;
   };
   const double width = boxWidth(picture, pixel), expected = kPixelsPerFrame * (close - open);
-  const double edge = kSize - litPixels(picture) + mean - 0.5;
-  const double middle = kSize / 2 + kPerMetre * kEdge + kPixelsPerFrame * 0.5 * (open + close);
+  const double edge = kWallSize - litPixels(picture) + mean - 0.5;
+  const double middle = kWallSize / 2 + kWallPerMetre * kCardEdge + kPixelsPerFrame * 0.5 * (open + close);
   std::printf("[ figure ] %s, %g:%g: %.4f px wide, %.4f expected; edge at %.4f px, %.4f expected\n", name, open, close,
               width, expected, edge, middle);
   EXPECT_NEAR(width, expected, 0.01) << name;

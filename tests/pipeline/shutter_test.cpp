@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-std::size_t differing(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
+std::size_t differingPixels(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i] ? 1 : 0;
   return count;
@@ -61,16 +61,16 @@ TEST_F(HeaderShutter, IsTakenAndCanBeUndone) {
   Request sharp = request("sharp.exr"), asked = sharp;
   asked.shutter = Shutter{-0.5, 0.25, false};
   const Image<glm::vec4> blurred = run(asked), plain = run(sharp);
-  EXPECT_GT(differing(blurred, plain), 0u);
+  EXPECT_GT(differingPixels(blurred, plain), 0u);
   Request byHeader = request("blurred.exr");
-  EXPECT_EQ(differing(run(byHeader), blurred), 0u);
+  EXPECT_EQ(differingPixels(run(byHeader), blurred), 0u);
   EXPECT_NE(said.find("shutter: -0.5:0.25 by attribute pellucid:shutter; --shutter 0:0"), std::string::npos) << said;
   byHeader.shutter = Shutter{0.0, 0.0, false};
-  EXPECT_EQ(differing(run(byHeader), plain), 0u);
+  EXPECT_EQ(differingPixels(run(byHeader), plain), 0u);
   // One pass has one time, and a scene that stands still needs none.
   byHeader.shutter.reset();
   byHeader.passes = sharp.passes = 1;
-  EXPECT_EQ(differing(run(byHeader), run(sharp)), 0u);
+  EXPECT_EQ(differingPixels(run(byHeader), run(sharp)), 0u);
   byHeader.passes = 4;
   byHeader.shot.time.animations = {"none"};
   run(byHeader);
@@ -82,7 +82,7 @@ TEST_F(HeaderShutter, WhatIsMalformedIsAsIfAbsent) {
   const Image<glm::vec4> plain = run(request("sharp.exr"));
   for (const char* text : {"", "0.5", "0.5:-0.5", "a:b", "-1e9:1e9", "nan:nan", "-0.5:0.5 ", "-0.5:0.5:1"}) {
     writePost(folder + "/odd.exr", kShotWidth, {{"Frame", "12"}, {kShutterAttribute, text}});
-    EXPECT_EQ(differing(run(request("odd.exr")), plain), 0u) << text;
+    EXPECT_EQ(differingPixels(run(request("odd.exr")), plain), 0u) << text;
   }
 }
 
@@ -137,7 +137,7 @@ TEST_F(HeaderShutter, TheLayerUnseenIsTheUncoveredShare) {
   resolve.layers = {LayerName::unseen};
   Journal journal;
   const ResolvedPlanes resolved = resolvePlanes(resolve, journal);
-  EXPECT_EQ(differing(resolved.picture.rgba, result.picture.rgba), 0u);
+  EXPECT_EQ(differingPixels(resolved.picture.rgba, result.picture.rgba), 0u);
   const Image<float>& again = resolved.layers.at(0).channels[0].second;
   for (std::size_t i = 0; i < share.size(); ++i) ASSERT_EQ(again[i], share[i]);
 

@@ -54,11 +54,11 @@ std::size_t differing(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
   return count;
 }
 
-struct Way {
+struct Route {
   const char* name;
   void (*ask)(Request& request);
 };
-const Way kWays[] = {
+const Route kRoutes[] = {
     {"plain", [](Request&) {}},
     {"four passes", [](Request& r) { r.passes = 4; }},
     {"exact", [](Request& r) { r.tier = Tier::exact; }},
@@ -89,12 +89,12 @@ const Way kWays[] = {
 // Two ways at once: all of them with each other.
 std::vector<std::pair<std::string, Request>> pairsOfWays(const ShotFiles& files, const std::string& opaque) {
   std::vector<std::pair<std::string, Request>> pairs;
-  for (const Way& first : kWays)
-    for (const Way& second : kWays) {
-      const auto shadows = [](const Way& way) { return std::string(way.name).find("shadows") != std::string::npos; };
+  for (const Route& first : kRoutes)
+    for (const Route& second : kRoutes) {
+      const auto shadows = [](const Route& way) { return std::string(way.name).find("shadows") != std::string::npos; };
       if (&first != &second && shadows(first) && shadows(second)) continue;  // by rays or by maps
       Request request = requestOf(opaque, files.scene);
-      for (const Way* way : {&first, &second}) {
+      for (const Route* way : {&first, &second}) {
         if (std::string(way->name) == "deep layers")
           request.shot.inputs = {files.scene, files.deepLayers};
         else

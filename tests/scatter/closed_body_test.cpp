@@ -16,9 +16,9 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 
-constexpr double kFocal = 1037.0;  // 1080p, 55 degrees
+constexpr double kFocalPixels = 1037.0;  // 1080p, 55 degrees
 
-shading::RefractionSettings depthSettings(double focal = kFocal) {
+shading::RefractionSettings depthSettings(double focal = kFocalPixels) {
   shading::RefractionSettings settings;
   settings.mode = shading::PLD_REFRACT_DEPTH;
   settings.distance = 2.0f;
@@ -91,7 +91,7 @@ std::optional<Bent> bend(int kind, const glm::dmat4& viewFromBody, const dvec3& 
   const dvec3 leaves = bent.enters + left->y * inside, normal = outwards(kind, bodyFromView, leaves);
   const dvec3 beyond = glm::refract(inside, -normal, 1.0 / eta);
   const dvec3 reached = leaves + beyond * ((backgroundZ + leaves.z) / -beyond.z);
-  const auto project = [](const dvec3& p) { return dvec2(p.x, -p.y) * (kFocal / -p.z); };
+  const auto project = [](const dvec3& p) { return dvec2(p.x, -p.y) * (kFocalPixels / -p.z); };
   bent.offset = project(reached) - project(bent.enters);
   bent.smooth = glm::dot(beyond, beyond) > 0.5 && -beyond.z > 0.3 && glm::dot(-direction, bent.normal) > 0.2 &&
                 glm::dot(inside, normal) > 0.2 && left->y > 1e-3 * glm::length(bent.enters);
@@ -218,7 +218,7 @@ TEST(ClosedBody, ThePassBendsAsTheClosedForm) {
           glm::normalize(dvec3((x + 0.5 - 0.5 * kWidth) / focal, -(y + 0.5 - 0.5 * kHeight) / focal, -1.0));
       const auto bent = bend(shading::PLD_BODY_BALL, viewFromBody, direction, 1 / 1.5, 9.0);
       if (!bent || !bent->smooth) continue;
-      const dvec2 right = bent->offset * (focal / kFocal), found = dvec2(sum.x, sum.y) / static_cast<double>(sum.z);
+      const dvec2 right = bent->offset * (focal / kFocalPixels), found = dvec2(sum.x, sum.y) / static_cast<double>(sum.z);
       worst = std::max(worst, glm::length(found - right) / (1.0 + glm::length(right)));
       ++pixels;
     }

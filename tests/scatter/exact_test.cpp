@@ -13,7 +13,7 @@
 namespace pellucid::test {
 namespace {
 
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_POWER, 0.1f, 1000.0f, 3.0f, 1.0f};
+constexpr shading::WeightSettings kPowerWeight{shading::PLD_WEIGHT_POWER, 0.1f, 1000.0f, 3.0f, 1.0f};
 
 const Image<glm::vec4>* const* sumsOf(const OitPlanes& planes, const Image<glm::vec4>* (&list)[7]) {
   list[0] = &planes.radiance, list[1] = &planes.weight, list[2] = &planes.opacity, list[3] = &planes.depth;
@@ -51,7 +51,7 @@ void longDoubleSums(const std::vector<Fragment>& fragments, long double (&sums)[
     scatter.offset = fragment.offset;
     scatter.variance = fragment.variance;
     const shading::OitTargets t =
-        shading::packSums(shading::layerSums(layer, kWeight, shading::PLD_NORMALISE_SPECTRAL));
+        shading::packSums(shading::layerSums(layer, kPowerWeight, shading::PLD_NORMALISE_SPECTRAL));
     const shading::ScatterTargets s = shading::packScatter(layer, scatter);
     for (int c = 0; c < 4; ++c) {
       sums[0][c] += static_cast<long double>(t.radiance[c]);
@@ -103,7 +103,7 @@ template <class Fold>
 OitPlanes foldedBy(Fold fold, const std::vector<std::vector<Fragment>>& pixels) {
   const FragmentLists lists = listsOf(pixels);
   OitPlanes planes = emptyPlanes(lists.window, lists.window);
-  fold(lists, kWeight, shading::PLD_NORMALISE_SPECTRAL, planes);
+  fold(lists, kPowerWeight, shading::PLD_NORMALISE_SPECTRAL, planes);
   return planes;
 }
 

@@ -12,10 +12,10 @@
 namespace pellucid::test {
 namespace {
 
-struct Shot {
+struct ProgramShot {
   std::string folder = freshFolder("scatter-program");
   std::string opaque = folder + "/opaque.exr", glass = folder + "/glass.glb";
-  Shot() {
+  ProgramShot() {
     writeOpaque(opaque);
     Quad frosted;
     frosted.material = {
@@ -37,7 +37,7 @@ struct Shot {
 };
 
 TEST(ScatterProgram, FlagsThatCannotBeHonouredAreUsageErrors) {
-  const Shot shot;
+  const ProgramShot shot;
   const std::vector<std::vector<std::string>> wrong = {
       {"--refract", "sideways"},
       {"--refract", "fixed:-1"},
@@ -58,7 +58,7 @@ TEST(ScatterProgram, FlagsThatCannotBeHonouredAreUsageErrors) {
 }
 
 TEST(ScatterProgram, ExactGivesTheSameFileForEveryOrderBudgetAndThreadCount) {
-  const Shot shot;
+  const ProgramShot shot;
   ASSERT_EQ(shot.composite("a.exr", {"--method", "phenomenological", "--precision", "exact"}).code, 0);
   ASSERT_EQ(shot.composite("b.exr", {"--method", "phenomenological", "--precision", "exact", "--order", "reverse",
                                      "--threads", "1"})
@@ -75,7 +75,7 @@ TEST(ScatterProgram, ExactGivesTheSameFileForEveryOrderBudgetAndThreadCount) {
 
 // A shot whose picture holds NaN and infinity, seen through frosted glass: each stays in its pixel, and is reported.
 TEST(ScatterProgram, NotFiniteColourIsContainedAndReported) {
-  const Shot shot;
+  const ProgramShot shot;
   const Window window{0, 0, 64, 64};
   Image<float> red(64, 64, 0.25f), green(64, 64, 0.5f);
   red.at(30, 31) = std::numeric_limits<float>::quiet_NaN();
@@ -104,7 +104,7 @@ TEST(ScatterProgram, NotFiniteColourIsContainedAndReported) {
 }
 
 TEST(ScatterProgram, PruningIsReportedAndChangesNoBit) {
-  const Shot shot;
+  const ProgramShot shot;
   const Ended pruned = shot.composite("pruned.exr", {"--method", "phenomenological", "--stats"}),
               full = shot.composite("full.exr", {"--method", "phenomenological", "--no-prune"});
   ASSERT_EQ(pruned.code, 0) << pruned.err;
@@ -115,7 +115,7 @@ TEST(ScatterProgram, PruningIsReportedAndChangesNoBit) {
 }
 
 TEST(ScatterProgram, PublishedTierKeepsNoDepth) {
-  const Shot shot;
+  const ProgramShot shot;
   const Ended ended =
       shot.composite("wrong.exr", {"--method", "phenomenological", "--precision", "published", "--layers", "depth"});
   EXPECT_EQ(ended.code, 2) << ended.err;
@@ -123,7 +123,7 @@ TEST(ScatterProgram, PublishedTierKeepsNoDepth) {
 }
 
 TEST(ScatterProgram, PublishedTierReportsItsBitsAndItsClamps) {
-  const Shot shot;
+  const ProgramShot shot;
   const Ended plain =
       shot.composite("plain.exr", {"--method", "phenomenological", "--precision", "published", "--stats"});
   ASSERT_EQ(plain.code, 0) << plain.err;
@@ -138,7 +138,7 @@ TEST(ScatterProgram, PublishedTierReportsItsBitsAndItsClamps) {
 
 // In two steps through a file, or in one: the same picture, and self-modulation is on in both.
 TEST(ScatterProgram, PublishedPlanesResolveToTheSamePicture) {
-  const Shot shot;
+  const ProgramShot shot;
   const std::string planes = shot.folder + "/planes.exr";
   ASSERT_EQ(runProgram({"accumulate", shot.opaque, shot.glass, "-o", planes, "--precision", "published"}).code, 0);
   const Ended ended = runProgram({"resolve", shot.opaque, planes, "-o", shot.folder + "/two.exr"});
@@ -162,7 +162,7 @@ TEST(ScatterProgram, PublishedPlanesResolveToTheSamePicture) {
 
 // Planes written, read and resolved give the picture of one run; the debug planes are those of the pass.
 TEST(ScatterProgram, AccumulateThenResolveIsComposite) {
-  const Shot shot;
+  const ProgramShot shot;
   const std::string planes = shot.folder + "/planes.exr", resolved = shot.folder + "/resolved.exr";
   ASSERT_EQ(runProgram({"accumulate", shot.opaque, shot.glass, "-o", planes}).code, 0);
   const Ended ended = runProgram({"resolve", shot.opaque, planes, "-o", resolved, "--layers", "D,delta,weight,count"});

@@ -15,7 +15,7 @@
 namespace pellucid::test {
 namespace {
 
-constexpr shading::WeightSettings kWeight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
+constexpr shading::WeightSettings kEq5Weight{shading::PLD_WEIGHT_EQ5, 0.1f, 100.0f, 3.0f, 1.0f};
 
 // All finite halves from 0 up, in order, from their definition.
 std::vector<float> halves() {
@@ -70,7 +70,7 @@ FragmentLists onePixel(const std::vector<Fragment>& fragments) {
 
 OitPlanes folded(const std::vector<Fragment>& fragments, PublishedClamps& clamps) {
   OitPlanes planes = emptyPublishedPlanes({0, 0, 1, 1}, {0, 0, 1, 1});
-  foldPublished(onePixel(fragments), kWeight, planes, clamps);
+  foldPublished(onePixel(fragments), kEq5Weight, planes, clamps);
   return planes;
 }
 
@@ -85,7 +85,7 @@ TEST(Published, OneLayerComesBackToHalfAStep) {
     ASSERT_EQ(clamps.total(), 0u);
     const glm::dvec3 o = static_cast<double>(fragment.coverage) * (1.0 - glm::dvec3(fragment.transmission));
     const double mean = (o.r + o.g + o.b) / 3;
-    const double w = static_cast<double>(shading::layerWeight(kWeight, fragment.z, static_cast<float>(mean)));
+    const double w = static_cast<double>(shading::layerWeight(kEq5Weight, fragment.z, static_cast<float>(mean)));
     for (int c = 0; c < 3; ++c) {
       const double a = w * static_cast<double>(fragment.radiance[c]);
       if (a > 1e-4) worst[0] = std::max(worst[0], std::abs(static_cast<double>(planes.radiance[0][c]) / a - 1));
@@ -143,7 +143,7 @@ TEST(Published, GlAndCpuAgreeToAStepALayer) {
     stage.slanted(x, y, x + random.between(10, 40), y + random.between(10, 30), z, z * 1.2, materials[i % 3]);
   }
   PassSettings settings;
-  settings.weight = kWeight;
+  settings.weight = kEq5Weight;
   settings.surroundings = glm::vec3(0.4f);
   settings.tier = SumsTier::published;
   GlContext context;
@@ -205,7 +205,7 @@ TEST(Published, ClampsAreCountedAndFinite) {
     stage.quad(0, 0, 8, 8, 0.15, stage.add(plastic({0.5f, 0.5f, 0.5f}, 1.0f, false)));
     stage.slanted(0, 0, 8, 8, 0.1, 0.6, stage.add(plastic({0.1f, 0.1f, 0.1f}, 0.0f, true)));
     PassSettings settings;
-    settings.weight = kWeight;
+    settings.weight = kEq5Weight;
     settings.tier = SumsTier::published;
     settings.scatter.k0 = 100.0f;
     settings.scatter.refract = shading::PLD_REFRACT_FIXED;
@@ -274,7 +274,7 @@ TEST(Published, PlanesComeBackFromTheirFileAndMerge) {
   }
   OitPlanes planes = emptyPublishedPlanes(lists.window, lists.window);
   PublishedClamps clamps;
-  foldPublished(lists, kWeight, planes, clamps);
+  foldPublished(lists, kEq5Weight, planes, clamps);
   const std::string path = freshFolder("published-planes") + "/planes.exr";
   writePlanes(path, planes);
   const OitPlanes back = readPlanes(path);

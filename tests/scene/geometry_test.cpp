@@ -8,7 +8,7 @@ namespace pellucid::test {
 namespace {
 
 const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-const std::vector<float> kUp = {0, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0, 2};
+const std::vector<float> kTallUp = {0, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0, 2};
 
 // The corners' positions of all triangles, in order.
 std::vector<glm::vec3> corners(const Primitive& primitive) {
@@ -38,7 +38,7 @@ TEST(Geometry, AllIndexTypesAgree) {
   const auto load = [](const std::function<int(Builder&)>& indices) {
     Builder builder;
     Json& primitive =
-        builder.mesh({{"POSITION", builder.floats(kSquare, "VEC3", 3)}, {"NORMAL", builder.floats(kUp, "VEC3", 3)}});
+        builder.mesh({{"POSITION", builder.floats(kSquare, "VEC3", 3)}, {"NORMAL", builder.floats(kTallUp, "VEC3", 3)}});
     primitive["indices"] = indices(builder);
     return builder.load().primitives.at(0);
   };

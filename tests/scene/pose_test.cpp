@@ -9,12 +9,12 @@ namespace pellucid::test {
 namespace {
 
 const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-const std::vector<float> kUp = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+const std::vector<float> kThreeUp = {0, 0, 1, 0, 0, 1, 0, 0, 1};
 
 TEST(Morph, WeightsOfTheNodeThenOfTheMesh) {
   Builder builder;
   Json& primitive =
-      builder.mesh({{"POSITION", builder.floats(kTriangle, "VEC3", 3)}, {"NORMAL", builder.floats(kUp, "VEC3", 3)}});
+      builder.mesh({{"POSITION", builder.floats(kTriangle, "VEC3", 3)}, {"NORMAL", builder.floats(kThreeUp, "VEC3", 3)}});
   primitive["targets"] = {{{"POSITION", builder.floats({0, 0, 2, 0, 0, 2, 0, 0, 2}, "VEC3", 3)}},
                           {{"POSITION", builder.floats({4, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3", 3)},
                            {"NORMAL", builder.floats({1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3", 3)}}};
@@ -59,7 +59,7 @@ Builder skinned() {
   Builder builder;
   builder.mesh(
       {{"POSITION", builder.floats(kTriangle, "VEC3", 3)},
-       {"NORMAL", builder.floats(kUp, "VEC3", 3)},
+       {"NORMAL", builder.floats(kThreeUp, "VEC3", 3)},
        {"JOINTS_0", builder.accessor(std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 4)},
        {"WEIGHTS_0", builder.accessor(std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 120, 120, 0, 0}, 5121,
                                       "VEC4", 4, true)}});

@@ -23,12 +23,12 @@ namespace {
 
 using namespace test;
 constexpr int kWidth = 48, kHeight = 40;
-const std::vector<std::string> kNames{"R", "G", "B", "A", "AR", "AG", "AB", "Z"};
+const std::vector<std::string> kLayerNames{"R", "G", "B", "A", "AR", "AG", "AB", "Z"};
 
 void writeDeep(const std::string& path, const DeepRows& rows) {
   DeepHeader header;
   header.display = header.data = rows.window;
-  header.channels = kNames;
+  header.channels = kLayerNames;
   DeepWriter writer(path, header);
   writer.write(rows);
   writer.finish();
@@ -44,7 +44,7 @@ DeepRows emptyRows() {
   DeepRows rows;
   rows.window = {0, 0, kWidth, kHeight};
   rows.offsets.assign(1, 0);
-  rows.channels.resize(kNames.size());
+  rows.channels.resize(kLayerNames.size());
   return rows;
 }
 
@@ -186,8 +186,8 @@ void writeTiles(const std::string& path, const DeepRows& rows) {
   frame.insertSampleCountSlice(
       exr::Slice(exr::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), sizeof(unsigned) * stride));
   for (std::size_t c = 0; c < pointers.size(); ++c) {
-    header.channels().insert(kNames[c], exr::Channel(exr::FLOAT));
-    frame.insert(kNames[c], exr::DeepSlice(exr::FLOAT, reinterpret_cast<char*>(pointers[c].data()), sizeof(char*),
+    header.channels().insert(kLayerNames[c], exr::Channel(exr::FLOAT));
+    frame.insert(kLayerNames[c], exr::DeepSlice(exr::FLOAT, reinterpret_cast<char*>(pointers[c].data()), sizeof(char*),
                                            sizeof(char*) * stride, sizeof(float)));
   }
   exr::DeepTiledOutputFile file(path.c_str(), header);
@@ -201,7 +201,7 @@ TEST(DeepTiles, HoldTheSameSamples) {
   const DeepRows rows = smoke(random);
   writeTiles(folder + "/tiles.exr", rows);
   for (const std::uint64_t most : {std::uint64_t{1}, std::uint64_t{200}, UINT64_MAX}) {
-    DeepReader reader(folder + "/tiles.exr", 0, kNames);
+    DeepReader reader(folder + "/tiles.exr", 0, kLayerNames);
     std::uint64_t samples = 0;
     for (int y = 0; y < kHeight;) {
       const DeepRows band = reader.read(y, kHeight, most);
@@ -212,7 +212,7 @@ TEST(DeepTiles, HoldTheSameSamples) {
                      here = there - static_cast<std::size_t>(y * kWidth);
           ASSERT_EQ(band.offsets[here + 1] - band.offsets[here], rows.offsets[there + 1] - rows.offsets[there]);
           for (std::uint64_t k = 0; k < band.offsets[here + 1] - band.offsets[here]; ++k)
-            for (std::size_t c = 0; c < kNames.size(); ++c)
+            for (std::size_t c = 0; c < kLayerNames.size(); ++c)
               ASSERT_EQ(band.channels[c][band.offsets[here] + k], rows.channels[c][rows.offsets[there] + k]);
         }
       samples += band.offsets.back();

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-Veil veilBy(const std::string& name, const FragmentLists& lists, const shading::WeightSettings& weight) {
+Veil veilOf(const std::string& name, const FragmentLists& lists, const shading::WeightSettings& weight) {
   Veil veil(lists.window.width(), 1);
   compositeBy(*chooseMethod(name), {0, weight, shading::PLD_NORMALISE_SPECTRAL}, lists, lists.window, veil);
   return veil;
@@ -48,15 +48,15 @@ FragmentLists grey(FragmentLists lists) {
   return lists;
 }
 
-const shading::WeightSettings kEq9 = weightOf(shading::PLD_WEIGHT_EQ9);
+const shading::WeightSettings kWb13Eq9 = weightOf(shading::PLD_WEIGHT_EQ9);
 
 TEST(Listings, AllThreeLayoutsHoldTheSamePicture) {
   for (const char set : {'A', 'B', 'D', 'E'}) {
     const FragmentLists lists = listsOfSet(set, 400, false, 500), mono = grey(lists);
-    EXPECT_EQ(largest(veilBy("listing3", lists, kEq9), veilBy("listing4", lists, kEq9)), 0.0);
-    EXPECT_EQ(largest(veilBy("listing4", mono, kEq9), veilBy("monochrome", mono, kEq9)), 0.0);
-    EXPECT_GT(largest(veilBy("listing4", lists, kEq9), veilBy("monochrome", lists, kEq9)), .05);  // colour is lost
-    const double halves = largest(veilBy("listing3", lists, kEq9), veilBy("weighted", lists, kEq9));
+    EXPECT_EQ(largest(veilOf("listing3", lists, kWb13Eq9), veilOf("listing4", lists, kWb13Eq9)), 0.0);
+    EXPECT_EQ(largest(veilOf("listing4", mono, kWb13Eq9), veilOf("monochrome", mono, kWb13Eq9)), 0.0);
+    EXPECT_GT(largest(veilOf("listing4", lists, kWb13Eq9), veilOf("monochrome", lists, kWb13Eq9)), .05);  // colour is lost
+    const double halves = largest(veilOf("listing3", lists, kWb13Eq9), veilOf("weighted", lists, kWb13Eq9));
     std::printf("[ figure ] set %c: listing 3 in half floats against float sums: largest %.4f\n", set, halves);
     EXPECT_LT(halves, .01);  // a few roundings of 2^-11
   }
@@ -78,7 +78,7 @@ TEST(Listings, ClampKeepsThinAndLargeSums) {
   }
   const shading::WeightSettings strong = weightOf(shading::PLD_WEIGHT_EQ7Z);
   for (const char* name : {"listing3", "listing4", "monochrome"}) {
-    const Veil veil = veilBy(name, listsOf({near}), strong);
+    const Veil veil = veilOf(name, listsOf({near}), strong);
     std::printf("[ figure ] %s, sums of 1e5 in half floats: colour %.4f of .5\n", name,
                 static_cast<double>(veil.light[0].g));
     EXPECT_TRUE(std::isfinite(veil.light[0].g));
@@ -90,7 +90,7 @@ TEST(Listings, ClampKeepsThinAndLargeSums) {
 TEST(Weights, TranslationOfTheWholeSceneInDepth) {
   const FragmentLists lists = listsOfSet('A', 300, false, 43);
   std::printf("[ figure ] scene moved by 0, 10, 100, 1000, 10000 m: change, distance to blended (RMSE x 1000)\n");
-  const Veil blended = veilBy("blended", lists, kEq9);
+  const Veil blended = veilOf("blended", lists, kWb13Eq9);
   const std::pair<const char*, shading::WeightSettings> weights[] = {
       {"eq7z", weightOf(shading::PLD_WEIGHT_EQ7Z)},
       {"eq8z", weightOf(shading::PLD_WEIGHT_EQ8Z)},
@@ -98,14 +98,14 @@ TEST(Weights, TranslationOfTheWholeSceneInDepth) {
       {"eq10z", weightOf(shading::PLD_WEIGHT_EQ10Z, .1f, 500.0f)},
       {"eq5", weightOf(shading::PLD_WEIGHT_EQ5, .1f, 1000.0f)}};
   for (const auto& [name, weight] : weights) {
-    const Veil here = veilBy("weighted", lists, weight);
+    const Veil here = veilOf("weighted", lists, weight);
     double last = 0;
     std::printf("[ figure ]   %-6s", name);
     for (const float metres : {0.0f, 10.0f, 100.0f, 1000.0f, 10000.0f}) {
       FragmentLists moved = lists;
       for (Fragment& fragment : moved.fragments) fragment.z += metres;
-      EXPECT_EQ(largest(veilBy("blended", moved, weight), blended), 0.0);
-      const Veil there = veilBy("weighted", moved, weight);
+      EXPECT_EQ(largest(veilOf("blended", moved, weight), blended), 0.0);
+      const Veil there = veilOf("weighted", moved, weight);
       last = 1000 * rms(there, blended);
       std::printf("  %.2f, %.2f", 1000 * rms(there, here), last);
       if (metres == 10.0f) {
