@@ -19,6 +19,9 @@ constexpr double kApart = 1.0 / 256.0;
 // How much more the slope of a ball may change at its limb than a pixel before: by as much where the limb passes
 // through the pixel's centre.
 constexpr double kLimb = 6.1;
+// How much more a surface may bend at a step than a step before, seen from either end, whichever way it slopes: along
+// the diagonals of a ball it falls and rises again.
+constexpr double kOn = 2.0;
 constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
 // Surfaces whose colours differ by less, relative to the brighter, do not tell their shares.
 constexpr double kContrast = 1.0 / 16.0;
@@ -63,10 +66,24 @@ class Finder {
     Side other = Side::own;  // own: none of the neighbours lies there
     bool mostlyOwn = false;  // of the 3 x 3 pixels more lie on the pixel's side of the edge
   };
+  // Three steps in a row.
+  struct Bends {
+    double first, second, third;
+    // More and more steeply, as towards a ball's limb.
+    bool steepens() const {
+      const bool steeper = first * second >= 0.0 && second * third > 0.0 && std::abs(first) <= std::abs(second);
+      return steeper && std::abs(third) <= std::abs(second) + kLimb * std::abs(second - first);
+    }
+    // Bent at the third as at the second, whichever way they slope.
+    bool goesOn() const {
+      const double bend = second - first, next = third - second;
+      return bend * next > 0.0 && std::abs(next) <= kOn * std::abs(bend);
+    }
+  };
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
   bool apart(int x, int y, int u, int v) const;
-  bool bendsAway(int x, int y, int dx, int dy) const;
+  std::optional<Bends> bendsOf(int x, int y, int dx, int dy) const;
   void markSteps();
   void markBesideEdges();
   bool breaksBetween(int x, int y, int u, int v) const;
@@ -103,21 +120,22 @@ bool Finder::apart(int x, int y, int u, int v) const {
       std::abs(planes_.at(u, v).z(x - u, y - v) - z) <= least)
     return false;
   if (std::max(std::abs(u - x), std::abs(v - y)) > 1) return true;
-  return !bendsAway(x, y, u - x, v - y) && !bendsAway(u, v, x - u, y - v);
+  const int dx = u - x, dy = v - y;
+  const std::optional<Bends> from = bendsOf(x, y, dx, dy), back = bendsOf(u, v, -dx, -dy);
+  if ((from && from->steepens()) || (back && back->steepens())) return false;
+  return !(from && back && from->goesOn() && back->goesOn());
 }
 
-// Whether a step to a neighbour goes on as the two steps before it, more and more steeply, as towards a ball's limb.
-bool Finder::bendsAway(int x, int y, int dx, int dy) const {
+// Of the step from a pixel to a neighbour and the two before it. Nothing where something was not hit.
+std::optional<Finder::Bends> Finder::bendsOf(int x, int y, int dx, int dy) const {
   double at[4];
   for (int k = 0; k < 4; ++k) {
     const int u = x + (k - 2) * dx, v = y + (k - 2) * dy;
-    if (!inside(u, v) || !hit(u, v)) return false;
+    if (!inside(u, v) || !hit(u, v)) return std::nullopt;
     const auto z = static_cast<double>(gbuffer_.viewZ.at(u, v));
     at[k] = planes_.at(u, v).orthographic ? z : 1.0 / z;  // linear on planes, which never bend so
   }
-  const double first = at[1] - at[0], second = at[2] - at[1], third = at[3] - at[2];
-  const bool steeper = first * second >= 0.0 && second * third > 0.0 && std::abs(first) <= std::abs(second);
-  return steeper && std::abs(third) <= std::abs(second) + kLimb * std::abs(second - first);
+  return Bends{at[1] - at[0], at[2] - at[1], at[3] - at[2]};
 }
 
 void Finder::markSteps() {

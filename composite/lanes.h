@@ -4,8 +4,9 @@
 #include <cstring>
 
 // Compiled for several kinds of x86-64, of which the program takes the widest that it runs on; what such a function
-// calls is compiled into it.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+// calls is compiled into it. Sanitizers instrument what takes the choice, which runs before they are ready.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define PLD_CLONES __attribute__((target_clones("avx2", "default"), flatten))
 #else
 #define PLD_CLONES

@@ -1,72 +1,18 @@
-#include <Imath/half.h>
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <stdexcept>
 
+#include "gbuffer/channel_encoder.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/opaque_io.h"
 
 namespace pellucid {
 namespace {
 
-constexpr float kLargestHalf = 65504.0f;
-
-// Floats to the bytes of a channel. Half rounds to nearest even; finite values beyond its range stay finite.
-class Encoder {
- public:
-  void put(ExrChannel& channel, std::size_t i, float value) { put(channel.bytes, channel.type, i, value); }
-  void put(std::vector<std::byte>& bytes, PixelType type, std::size_t i, float value) {
-    if (type == PixelType::float32) {
-      std::memcpy(bytes.data() + i * 4, &value, 4);
-      return;
-    }
-    if (std::isfinite(value) && std::abs(value) > kLargestHalf) {
-      value = std::copysign(kLargestHalf, value);
-      ++clamped_;
-    }
-    const std::uint16_t bits = imath_float_to_half(value);
-    std::memcpy(bytes.data() + i * 2, &bits, 2);
-  }
-  void add(const Encoder& other) { clamped_ += other.clamped_; }
-  void noteTo(std::vector<std::string>& notes) const {
-    if (clamped_ > 0) notes.push_back(fmt::format("{} values beyond 65504, the largest half, became 65504", clamped_));
-  }
-
- private:
-  std::size_t clamped_ = 0;
-};
-
-std::string channelName(const ExtraLayer& layer, const std::string& suffix) {
-  return layer.name.empty() ? suffix : suffix.empty() ? layer.name : layer.name + "." + suffix;
-}
-
-std::vector<ExrChannel> channelsOf(const std::vector<ExtraLayer>& layers, const Window& data, PixelType type,
-                                   Encoder& encoder) {
-  std::vector<ExrChannel> channels;
-  std::vector<const Image<float>*> planes;
-  for (const ExtraLayer& layer : layers)
-    for (const auto& [suffix, plane] : layer.channels) {
-      if (plane.width() != data.width() || plane.height() != data.height())
-        throw std::logic_error(channelName(layer, suffix) + ": a layer of another size than the data window");
-      channels.push_back({channelName(layer, suffix), type, {}});
-      planes.push_back(&plane);
-    }
-  std::vector<Encoder> encoders(channels.size());
-  tbb::parallel_for(std::size_t{0}, channels.size(), [&](std::size_t c) {
-    const Image<float>& plane = *planes[c];
-    channels[c].bytes.resize(plane.size() * bytesOf(type));
-    for (std::size_t i = 0; i < plane.size(); ++i) encoders[c].put(channels[c], i, plane[i]);
-  });
-  for (const Encoder& each : encoders) encoder.add(each);
-  return channels;
-}
-
 // What a picture changes in its part.
-void addEdit(const PictureOfView& view, Encoder& encoder, ExrPartEdit& edit) {
+void addEdit(const PictureOfView& view, ChannelEncoder& encoder, ExrPartEdit& edit) {
   const OpaqueFile& file = view.file;
   const Image<std::uint8_t>& touched = view.touched;
   const Window& data = file.gbuffer.data;
@@ -95,7 +41,7 @@ void addEdit(const PictureOfView& view, Encoder& encoder, ExrPartEdit& edit) {
 std::vector<std::string> writePictures(const std::string& path, const std::vector<PictureOfView>& views,
                                        const std::map<std::string, std::string>& attributes) {
   std::map<int, ExrPartEdit> edits;
-  Encoder encoder;
+  ChannelEncoder encoder;
   for (const PictureOfView& view : views) {
     ExrPartEdit& edit = edits[view.file.choice.beautyPart];
     edit.attributes = attributes;
@@ -123,7 +69,7 @@ std::vector<std::string> writeLayers(const std::string& path, const Window& disp
   file.display = display;
   file.data = data;
   file.attributes = attributes;
-  Encoder encoder;
+  ChannelEncoder encoder;
   file.channels = channelsOf(layers, data, half ? PixelType::half : PixelType::float32, encoder);
   if (camera && !(like && like->attributes.contains("worldToCamera"))) {
     float matrices[2][4][4];

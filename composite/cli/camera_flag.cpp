@@ -88,4 +88,12 @@ SurroundingsChoice surroundingsChoice(const std::string& text) {
   return PictureOfSurroundings{text};
 }
 
+std::vector<std::string> viewsOf(const std::string& path) {
+  const ExrDocument document = readExr(path);
+  if (document.views.size() < 2)
+    throw MeaningError(fmt::format("{}: --view: found {}, expected several views for all", path,
+                                   document.views.empty() ? "no views" : "the view " + document.views[0]));
+  return document.views;
+}
+
 }  // namespace pellucid::cli

@@ -13,5 +13,7 @@ CameraChoice cameraOfView(const std::vector<std::string>& cameras, const std::st
                           const std::vector<std::string>& views);
 CameraChoice cameraChoice(const std::string& text);  // "", a name, eye=...;look=... or fit[:A,E]; throws UsageError
 SurroundingsChoice surroundingsChoice(const std::string& text);  // "", R,G,B or a file; throws UsageError
+// The views of a file that has several. Throws MeaningError for one with fewer.
+std::vector<std::string> viewsOf(const std::string& path);
 
 }  // namespace pellucid::cli

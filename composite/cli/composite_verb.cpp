@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/camera_flag.h"
 #include "composite/cli/explain_page.h"
 #include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
@@ -11,6 +12,7 @@
 #include "composite/pipeline/compositor.h"
 #include "composite/pipeline/default_weight.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/supersampled.h"
 
 namespace pellucid::cli {
 namespace {
@@ -20,14 +22,6 @@ constexpr int kDefaultPasses = 8;
 
 // What a process keeps from one frame to the next.
 using Kept = std::shared_ptr<KeptWork>;
-
-std::vector<std::string> viewsOf(const std::string& path) {
-  const ExrDocument document = readExr(path);
-  if (document.views.size() < 2)
-    throw MeaningError(fmt::format("{}: --view: found {}, expected several views for all", path,
-                                   document.views.empty() ? "no views" : "the view " + document.views[0]));
-  return document.views;
-}
 
 // Extra layers of the second view and further ones are named after it where they would lie in one part.
 std::vector<std::string> writeViews(const std::string& path, const std::vector<std::string>& views,
@@ -77,6 +71,7 @@ void compositeViews(const CompositeFlags& flags, const FrameRun& frame, const Ke
     throw UsageError("--preview: found it with --view all, expected one view: a PNG shows one picture");
   if (!flags.explainPage.empty())
     throw UsageError("--explain-page: found it with --view all, expected one view: a page shows one plan");
+  if (flags.render.supersampled > 1) throw UsageError("--supersampled: found it with --view all, expected one view");
   const std::vector<std::string> views = viewsOf(flags.render.opaque);
   std::vector<std::unique_ptr<Compositor>> compositors;
   std::vector<Result> results;
@@ -119,6 +114,11 @@ void CompositeFlags::addTo(CLI::App& verb, bool allViews) {
   what.allViews = allViews;
   what.blurs = true;
   render.addTo(verb, what);
+  verb.add_option(
+          "--supersampled", render.supersampled,
+          "The picture has N x N samples for each pixel: composite all of them, and write their means at 1/N of "
+          "its size; --aa then counts the passes of each sample, by default as many as make 8 a pixel")
+      ->check(CLI::Range(1, kMostSupersampling));
   verb.add_option("-o,--output", output, "EXR to write")->required();
   preview.addTo(verb);
   verb.add_flag("--explain", explain, "Print what would be done and why, and stop before anything is drawn");

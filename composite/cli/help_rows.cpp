@@ -95,6 +95,7 @@ const std::vector<HelpRow> kRows{
     {"--lens-blades", kTime, "N"},
     {"--tolerance", kQuality, "E"},
     {"--low-res", kQuality, ""},
+    {"--supersampled", kQuality, "N"},
     {"--mask", kQuality, ""},
     {"--texture-filter", kQuality, ""},
     {"--no-prune", kQuality, ""},

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "composite/cli/system_flags.h"
 #include "gbuffer/errors.h"
 
@@ -49,21 +51,21 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
             ->capture_default_str();
   passes = what.defaultPasses;
   if (what.passes)
-    verb.add_option("--aa", passes, "Jittered passes, averaged; 1 samples pixel centres")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
+    passesOption_ = verb.add_option("--aa", passes, "Jittered passes, averaged; 1 samples pixel centres")
+                        ->check(CLI::Range(1, 4096))
+                        ->capture_default_str();
   if (what.blurs) blur.addTo(verb);
-  if (what.edges)
+  if (what.edges) {
     verb.add_option("--filter", filter,
                     "Pixel filter of the picture, that --aa takes its places from: box, triangle, gaussian or "
                     "blackman-harris, each with :RADIUS in pixels to each side or without; else as the picture's "
                     "header or its program says, else box");
-  if (what.edges)
     edgesOption_ = verb.add_option("--edges", edges,
                                    "Pixels that the renderer filtered over an edge: resolve takes them apart into "
                                    "their two surfaces, which --aa composites at their own depths; off: one surface")
                        ->check(CLI::IsMember({"resolve", "off"}))
                        ->capture_default_str();
+  }
   if (what.listsToo && what.weighs) stochastic.addTo(verb);
   if (what.listsToo && what.weighs && what.precision) addWays(verb, *this);
   if (!what.resolves) return;
@@ -76,6 +78,9 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
 void RenderFlags::paintInto(Request& request) const {
   method.into(request);
   request.passes = passes;
+  request.supersampled = supersampled;
+  if (supersampled > 1 && passesOption_->count() == 0)
+    request.passes = std::max(1, passes / (supersampled * supersampled));
   if (!filter.empty()) request.pixelFilter = parsePixelFilter(filter);
   if (edgesOption_ && edgesOption_->count() > 0) request.edges = edges == "resolve" ? EdgeRule::resolve : EdgeRule::off;
   shadow.into(request);

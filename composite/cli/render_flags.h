@@ -48,6 +48,7 @@ struct RenderFlags {
   FogFlags fog;
   StochasticFlags stochastic;
   SelfModulationFlag selfModulation;
+  int supersampled = 1;  // N, where the verb has --supersampled
   int passes = 1, particleLight = 64, lowResolution = LowResolutionRequest::kDefault;
   std::optional<double> tolerance;
   bool measure = false;
@@ -59,7 +60,7 @@ struct RenderFlags {
 
  private:
   void paintInto(Request& request) const;
-  const CLI::Option *lowResolutionOption_ = nullptr, *edgesOption_ = nullptr;
+  const CLI::Option *lowResolutionOption_ = nullptr, *edgesOption_ = nullptr, *passesOption_ = nullptr;
 };
 
 }  // namespace pellucid::cli

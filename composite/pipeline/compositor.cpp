@@ -27,6 +27,7 @@
 #include "composite/pipeline/weight_file.h"
 #include "engine_bridge/scene/screen_bounds.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/supersampled.h"
 #include "gbuffer/weight_text.h"
 
 namespace pellucid {
@@ -196,6 +197,7 @@ const Lighting& Compositor::lightOf(const Request& request) {
 Compositor::Run Compositor::prepare(const Request& request) {
   Run run;
   run.plan = plan(request);
+  expectWholePixels(request.shot.opaque, shot_->opaque.gbuffer, run.plan.supersampled);
   run.request = &request;
   journal_.note(run.plan.notes);
   if (run.plan.shutter && run.plan.shutter->opens() && !shot_->moment)
@@ -345,16 +347,19 @@ Result Compositor::painted(const Request& request, double holdTo) {
   result.veil = paint(run.plan, run.pass, run, journal_, result.counts,
                       asks(request.layers, LayerName::unseen) ? &unseen : nullptr);
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
-  result.dataWindow = gbuffer.data;
+  const int samples = run.plan.supersampled;
+  result.dataWindow = pixelsOf(gbuffer.data, samples);
   result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
   noteWhatIsNotFinite(result.picture, gbuffer, journal_);
   const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
   for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
+  if (samples > 1) result.picture = {meansOf(result.picture.rgba, samples), anyOf(result.picture.touched, samples)};
   if (!anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);
   if (request.measure || holdTo > 0.0) {
     Journal truth = journal_.beside();
     RunCounts unused;
-    const Image<glm::vec4> exact = compose(paint(truthOf(run.plan), run.pass, run, truth, unused), gbuffer).rgba;
+    Image<glm::vec4> exact = compose(paint(truthOf(run.plan), run.pass, run, truth, unused), gbuffer).rgba;
+    if (samples > 1) exact = meansOf(exact, samples);
     if (request.measure) result.error = measureError(result.picture.rgba, exact);
     const auto* within = run.plan.as<PaintWithin>();
     if (const double tolerance = within ? within->tolerance : holdTo; tolerance > 0.0)
@@ -374,6 +379,8 @@ Result Compositor::painted(const Request& request, double holdTo) {
     const OitPlanes planes = journal_.time("debug planes", [&] { return sumsOf(context, run.pass); });
     result.layers.push_back(planeLayer(request.layers, planes));
   }
+  if (samples > 1)
+    for (ExtraLayer& layer : result.layers) layer = pixelsOf(layer, samples);
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   result.stages = std::exchange(journal_.stages, Stages());
   result.device = device_.description();
@@ -480,9 +487,11 @@ std::vector<std::string> Compositor::write(const std::string& path, const Result
                                            const std::map<std::string, std::string>& beside) const {
   std::map<std::string, std::string> header = attributes(result);
   header.insert(beside.begin(), beside.end());
+  const int n = result.plan.supersampled;
   if (shot_->lender)
     return writeFromMemory(path, shot_->opaque, shot_->hasCamera ? &shot_->camera : nullptr, result.picture.rgba,
-                           result.layers, header);
+                           result.layers, header, n);
+  if (n > 1) return writePixels(path, shot_->opaque, n, result.picture.rgba, result.layers, header);
   return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,
                    header);
 }

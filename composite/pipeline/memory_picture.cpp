@@ -11,6 +11,7 @@
 
 #include "composite/pipeline/output_layers.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/supersampled.h"
 #include "gbuffer/unit_normal.h"
 
 namespace pellucid {
@@ -201,25 +202,25 @@ void readMemoryPicture(MemoryPicture& picture, OpaqueFile& file) {
 
 std::vector<std::string> writeFromMemory(const std::string& path, const OpaqueFile& opaque, const Camera* camera,
                                          const Image<glm::vec4>& beauty, const std::vector<ExtraLayer>& layers,
-                                         const std::map<std::string, std::string>& attributes) {
+                                         const std::map<std::string, std::string>& attributes, int samples) {
   const GBuffer& gbuffer = opaque.gbuffer;
-  std::vector<ExtraLayer> all{beautyLayer(beauty)};
-  if (!gbuffer.hasAlpha) all[0].channels.pop_back();
-  all[0].channels.emplace_back("Z", gbuffer.viewZ);
-  if (!gbuffer.occlusion.empty()) all[0].channels.emplace_back("AO", gbuffer.occlusion);
+  ExtraLayer colours = beautyLayer(beauty), planes{"", {}}, normals{"N", {}};
+  if (!gbuffer.hasAlpha) colours.channels.pop_back();
+  planes.channels.emplace_back("Z", gbuffer.viewZ);
+  if (!gbuffer.occlusion.empty()) planes.channels.emplace_back("AO", gbuffer.occlusion);
   if (!gbuffer.normal.empty()) {
-    ExtraLayer normals{"N", {}};
     const char* names[] = {"X", "Y", "Z"};
     for (int c = 0; c < 3; ++c) {
-      Image<float> plane(beauty.width(), beauty.height());
+      Image<float> plane(gbuffer.normal.width(), gbuffer.normal.height());
       for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = gbuffer.normal[i][c];
       normals.channels.emplace_back(names[c], std::move(plane));
     }
-    all.push_back(std::move(normals));
   }
+  std::vector<ExtraLayer> all{std::move(colours)};
+  for (const ExtraLayer& each : {planes, normals}) all.push_back(samples > 1 ? pixelsOf(each, samples) : each);
   all.insert(all.end(), layers.begin(), layers.end());
-  return writeLayers(path, gbuffer.display, gbuffer.data, all, attributes, camera, false, nullptr,
-                     chromaticitiesToWrite(opaque.space));
+  return writeLayers(path, pixelsOf(gbuffer.display, samples), pixelsOf(gbuffer.data, samples), all, attributes, camera,
+                     false, nullptr, chromaticitiesToWrite(opaque.space));
 }
 
 }  // namespace pellucid

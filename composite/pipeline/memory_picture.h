@@ -55,9 +55,10 @@ void readMemoryPicture(MemoryPicture& picture, OpaqueFile& file);
 
 // A file of such a picture with another beauty: R, G, B, A where it has one, Z, normals, occlusion, and the layers.
 // Returns the notes. Throws ResourceError.
-//   camera  null where nothing needed one
+//   camera   null where nothing needed one
+//   samples  N, where beauty and layers are means of N x N pixels of the picture
 std::vector<std::string> writeFromMemory(const std::string& path, const OpaqueFile& opaque, const Camera* camera,
                                          const Image<glm::vec4>& beauty, const std::vector<ExtraLayer>& layers,
-                                         const std::map<std::string, std::string>& attributes);
+                                         const std::map<std::string, std::string>& attributes, int samples = 1);
 
 }  // namespace pellucid

@@ -196,6 +196,7 @@ Plan planFor(const Request& request, const ShotFacts& facts) {
   plan.deepFiles = facts.deepFiles > 0;
   plan.fog = request.fog.on();
   plan.passes = request.passes;
+  plan.supersampled = request.supersampled;
   chooseFilter(request, facts, plan);
   chooseShutter(request, facts, plan);
   plan.pictureMoves = movesPicture(request, facts, plan.shutter);
@@ -278,6 +279,9 @@ std::vector<std::string> describe(const Plan& plan, const ShotFacts& facts) {
                             plan.route == Route::drawnSums || plan.route == Route::foldedSums
                                 ? plan.resolvesOnDevice ? "resolved on the device" : "resolved on the CPU"
                                 : "composited on the CPU"));
+  if (plan.supersampled > 1)
+    say("result", fmt::format("{}x{}, each pixel the mean of {} x {}", facts.width / plan.supersampled,
+                              facts.height / plan.supersampled, plan.supersampled, plan.supersampled));
   if (plan.passes > 1) say("filter", filterText(plan.pixelFilter));
   say("edges", plan.edges ? "taken apart into their two surfaces" : "as pixels of one surface");
   say("memory", fmt::format("about {} MiB besides the picture", plan.bytes >> 20));

@@ -38,6 +38,7 @@ struct Plan {
   bool fog = false;
   int passes = 1;                  // jittered
   PixelFilter pixelFilter;         // that they are drawn from
+  int supersampled = 1;            // N: the result's pixels are means of N x N of the picture's
   std::optional<Shutter> shutter;  // as asked for, or as the picture's header has it
   bool pictureMoves = false;       // from pass to pass: the camera moves, or a lens is open
   bool edges = false;              // filtered edges of the picture are taken apart

@@ -178,6 +178,8 @@ struct Request {
   Tier tier = Tier::float32;
   SumsRequest sums;
   int passes = 1;  // jittered, averaged
+  // The picture has N x N samples for each pixel of the result, which is their mean: all of them are composited.
+  int supersampled = 1;
   // By which the picture was filtered: places of several passes are drawn from it. Else as its header or its producer
   // says, else the pixel's square.
   std::optional<PixelFilter> pixelFilter;

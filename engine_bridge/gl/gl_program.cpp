@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "engine_bridge/scene/placed.h"
 #include "shaders/shader_source.h"
 
 namespace pellucid::gl {
@@ -41,7 +42,8 @@ Program buildProgram(const std::string& vertexStage, const std::string& fragment
     if (length > 0) glGetProgramInfoLog(name, length, nullptr, log.data());
     throw std::logic_error(fragmentStage + " does not link: " + log);
   }
-  program.viewFromObject = glGetUniformLocation(name, "viewFromObject");
+  program.viewFromOffset = glGetUniformLocation(name, "viewFromOffset");
+  program.objectOrigin = glGetUniformLocation(name, "objectOrigin");
   program.normalFromObject = glGetUniformLocation(name, "normalFromObject");
   program.thicknessScale = glGetUniformLocation(name, "thicknessScale");
   program.instanceColour = glGetUniformLocation(name, "instanceColour");
@@ -52,6 +54,12 @@ Program buildProgram(const std::string& vertexStage, const std::string& fragment
   program.bodyKind = glGetUniformLocation(name, "bodyKind");
   program.bodyFromView = glGetUniformLocation(name, "bodyFromView");
   return program;
+}
+
+void Program::placeObject(const glm::dmat4& viewFromObject, double nearest) const {
+  const PlacedNearEye placed = placedNearEye(viewFromObject, nearest);
+  glUniform3fv(objectOrigin, 1, &placed.origin[0]);
+  glUniformMatrix4fv(viewFromOffset, 1, GL_FALSE, &placed.viewFromOffset[0][0]);
 }
 
 const Program& ProgramCache::get(const std::string& vertexStage, const std::string& fragmentStage,

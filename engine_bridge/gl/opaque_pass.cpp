@@ -192,8 +192,7 @@ void OpaquePass::sweep(const char* output, const PunctualLight* light, GLsizei o
       glEnable(GL_CULL_FACE);
     for (const std::size_t instance : drawn.instances) {
       const Placed& placed = placed_[instance];
-      const glm::mat4 position(placed.viewFromObject);
-      glUniformMatrix4fv(program.viewFromObject, 1, GL_FALSE, &position[0][0]);
+      program.placeObject(placed.viewFromObject, 0.0);
       glUniformMatrix3fv(program.normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
       glUniform1f(program.thicknessScale, placed.thicknessScale);
       glUniform4fv(program.instanceColour, 1, &scene_.instances[instance].colour[0]);

@@ -32,6 +32,13 @@ void requireMatch(const GBuffer& gbuffer) {
     throw std::logic_error("the G-buffer's depth does not have the size of its data window");
 }
 
+// Metres to the nearest thing of the picture; 1e30 where it shows nothing.
+double nearestOf(const GBuffer& gbuffer) {
+  float nearest = 1e30f;
+  for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i) nearest = std::min(nearest, gbuffer.viewZ[i]);
+  return static_cast<double>(nearest);
+}
+
 // Of fragments that know whether they lie behind the eye's plane. An orthographic view's triangles, cut there before,
 // would end where the rasteriser rounds the cut to, which for steep ones is far from the plane.
 glm::mat4 clipUncut(const Camera& camera, const Window& display, const Window& data, glm::dvec2 sample) {
@@ -46,7 +53,12 @@ glm::mat4 clipUncut(const Camera& camera, const Window& display, const Window& d
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
-    : scene_(scene), gbuffer_(&gbuffer), camera_(camera), textures_(scene), stream_(scene) {
+    : scene_(scene),
+      gbuffer_(&gbuffer),
+      nearest_(nearestOf(gbuffer)),
+      camera_(camera),
+      textures_(scene),
+      stream_(scene) {
   requireMatch(gbuffer);
   frameBuffer_ = Buffer::make();
   materialBuffer_ = Buffer::make();
@@ -89,6 +101,7 @@ void Renderer::over(const GBuffer& gbuffer, const Camera& camera) {
     throw std::logic_error(
         "Renderer::over: another place or kind of camera than the one that everything was placed by");
   gbuffer_ = &gbuffer;
+  nearest_ = nearestOf(gbuffer);
   camera_ = camera;
   opaqueZ_.reset();
   opaqueZPart_ = {};
@@ -414,7 +427,6 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
     if (!takes(settings_.layers, material)) continue;
     if (tracing_ && (material.unlit || material.billboard || primitive.points)) continue;
     const Placed& placed = placed_[one.instance];
-    const glm::mat4 viewFromObject(placed.viewFromObject);
     const Program& wanted = programFor(instance.primitive, output);
     if (&wanted != program) glUseProgram(wanted.name.name());
     program = &wanted;
@@ -430,7 +442,7 @@ void Renderer::drawChunk(const std::vector<ChunkDraw>& draws, Output output) {
       glDisable(GL_CULL_FACE);
     else
       glEnable(GL_CULL_FACE);
-    glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
+    program->placeObject(placed.viewFromObject, nearest_);
     glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
     glUniform1f(program->thicknessScale, placed.thicknessScale);
     glUniform4fv(program->instanceColour, 1, &instance.colour[0]);

@@ -95,6 +95,7 @@ class Renderer {
 
   const Scene& scene_;
   const GBuffer* gbuffer_;
+  double nearest_;  // metres, of its depths
   Camera camera_;
   SceneTextures textures_;
   GeometryStream stream_;

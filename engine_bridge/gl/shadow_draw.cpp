@@ -15,6 +15,9 @@
 namespace pellucid::gl {
 namespace {
 
+// Maps tell nothing apart that floats about the object's origin do not.
+constexpr double kCoarse = std::numeric_limits<double>::infinity();
+
 constexpr const char* kVertexStage = "gl/transparent.vert";
 constexpr double kCullTexels = 2.0;  // that a caster may lie behind the opaque: both are rasterised
 
@@ -190,8 +193,7 @@ void ShadowDrawer::drawOpaque() {
         const Primitive& primitive =
             scene_.primitives[static_cast<std::size_t>(scene_.instances[one.instance].primitive)];
         if (!castsInto(Casters::opaque, scene_.materials[static_cast<std::size_t>(primitive.material)])) continue;
-        const glm::mat4 viewFromObject(placed_[one.instance].viewFromObject);
-        glUniformMatrix4fv(program.viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
+        program.placeObject(placed_[one.instance].viewFromObject, kCoarse);
         glUniformMatrix3fv(program.normalFromObject, 1, GL_FALSE, &placed_[one.instance].normalFromObject[0][0]);
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.firstTriangle * 3), static_cast<GLsizei>(one.triangles * 3));
       }
@@ -246,8 +248,7 @@ void ShadowDrawer::drawCasters() {
       else
         glEnable(GL_CULL_FACE);
       const Placed& placed = placed_[one.instance];
-      const glm::mat4 viewFromObject(placed.viewFromObject);
-      glUniformMatrix4fv(program->viewFromObject, 1, GL_FALSE, &viewFromObject[0][0]);
+      program->placeObject(placed.viewFromObject, kCoarse);
       glUniformMatrix3fv(program->normalFromObject, 1, GL_FALSE, &placed.normalFromObject[0][0]);
       glUniform1f(program->thicknessScale, placed.thicknessScale);
       glUniform4fv(program->instanceColour, 1, &instance.colour[0]);

@@ -8,6 +8,9 @@ namespace {
 
 constexpr double kFlat = 1e-12;  // of the product of its axes' lengths: what rounding leaves of a volume of 0
 
+// Eye to origin over the nearest distance: from there on what floats round of a point is more than float depth tells.
+constexpr double kFar = 8.0;
+
 // Carries normals; unlike the inverse transpose it stands a flattened (singular) matrix.
 glm::dmat3 cofactors(const glm::dmat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
@@ -37,6 +40,23 @@ double uniformScale(const glm::dmat4& transform) {
   if (volume > kFlat * cube) return std::cbrt(volume);
   const glm::dmat3 areas = cofactors(linear);
   return std::sqrt(std::max({glm::length(areas[0]), glm::length(areas[1]), glm::length(areas[2])}));
+}
+
+PlacedNearEye placedNearEye(const glm::dmat4& viewFromObject, double nearest) {
+  PlacedNearEye placed;
+  const glm::dmat3 linear(viewFromObject);
+  const double cube = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  glm::dmat4 offset = viewFromObject;
+  const bool far = glm::length(glm::dvec3(viewFromObject[3])) > kFar * nearest;
+  if (far && std::abs(glm::determinant(linear)) > kFlat * cube) {
+    const glm::vec3 eye(-(glm::inverse(linear) * glm::dvec3(viewFromObject[3])));
+    if (std::isfinite(eye.x + eye.y + eye.z)) {
+      placed.origin = eye;
+      offset[3] = glm::dvec4(glm::dvec3(viewFromObject[3]) + linear * glm::dvec3(eye), 1.0);
+    }
+  }
+  placed.viewFromOffset = glm::mat4(offset);
+  return placed;
 }
 
 std::vector<Placed> placeInstances(const Scene& scene, const Camera& camera) {

@@ -2,7 +2,7 @@
 // Object to view space, and to the data window's clip space.
 #include "gl/exact_coverage.glsl"
 #include "gl/vertex_input.glsl"
-uniform mat4 viewFromObject;
+uniform mat4 viewFromOffset;  // of points less objectOrigin
 uniform mat3 normalFromObject;
 #ifdef VERTEX_COLOUR
 uniform vec4 instanceColour;  // multiplies the vertices' own
@@ -20,9 +20,10 @@ layout(location = 7) out vec4 viewTangent;
 #endif
 invariant gl_Position;
 
-//   at  corner of a particle's disc, in radii; and its radius
-vec3 viewOf(vec3 pObject, vec4 at) {
-  precise vec4 pView = viewFromObject * vec4(pObject, 1.0f);
+//   pOffset  object space, less objectOrigin
+//   at       corner of a particle's disc, in radii; and its radius
+vec3 viewOf(vec3 pOffset, vec4 at) {
+  precise vec4 pView = viewFromOffset * vec4(pOffset, 1.0f);
 #ifdef POINTS
   precise vec2 aside = at.xy * (at.z * pointScale);
   pView.xy += aside;
@@ -216,7 +217,7 @@ void main() {
 #ifdef EXACT_COVERAGE
   placeCorner();
 #else
-  viewPosition = viewOf(position, uv);
+  viewPosition = viewOf(position - objectOrigin, uv);
   gl_Position = clipOf(viewPosition);
 #endif
   viewNormal = normalFromObject * normal;
@@ -230,6 +231,6 @@ void main() {
 #ifndef EXACT_COVERAGE
   vec4 tangent = unpackTangent(packedTangent);
 #endif
-  viewTangent = vec4(mat3(viewFromObject) * tangent.xyz, tangent.w);
+  viewTangent = vec4(mat3(viewFromOffset) * tangent.xyz, tangent.w);
 #endif
 }

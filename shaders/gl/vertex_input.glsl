@@ -1,6 +1,7 @@
 #pragma once
 // A vertex, from attributes; or pulled from storage, where each triangle must know its number: gl_PrimitiveID does not
 // survive clipping on Mesa's software rasteriser.
+uniform vec3 objectOrigin;  // object space, near the eye: PlacedNearEye
 #ifdef NORMAL_TEXTURE
 #include "shared/surface.glsl"
 #endif
@@ -17,10 +18,10 @@ layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 layout(std430, binding = 2) readonly buffer TriangleNumbers { uint triangleNumbers[]; };  // within the primitive
 
 layout(location = 4) flat out uint triangleNumber;
-vec3 position, normal;
+vec3 position, normal;  // the position less objectOrigin
 vec4 uv, colour, tangent;
 
-vec3 positionAt(int corner) { return vertices[indices[corner]].positionNormalX.xyz; }
+vec3 positionAt(int corner) { return vertices[indices[corner]].positionNormalX.xyz - objectOrigin; }
 
 vec4 uvAt(int corner) {
   PulledVertex v = vertices[indices[corner]];
@@ -36,7 +37,7 @@ void fetchVertex(int first, vec3 share) {
   tangent = vec4(0.0f);
   for (int k = 0; k < 3; ++k) {
     PulledVertex v = vertices[indices[first + k]];
-    position += share[k] * v.positionNormalX.xyz;
+    position += share[k] * (v.positionNormalX.xyz - objectOrigin);
     normal += share[k] * vec3(v.positionNormalX.w, v.normalYzUv0.xy);
     uv += share[k] * vec4(v.normalYzUv0.zw, v.uv1ColourRg.xy);
     colour += share[k] * vec4(v.uv1ColourRg.zw, v.colourBaTangent.xy);

@@ -84,6 +84,7 @@ const Feature kFeatures[] = {
        openLens(r);
        r.shadows.source = ShadowSource::rays;
      }},
+    {"samples of pixels", [](Request& r) { r.supersampled = 3; }},
     {"a pixel filter",
      [](Request& r) {
        r.passes = 2;

@@ -94,6 +94,21 @@ void parallel_for(Index first, Index last, const Body& body) {
   });
 }
 
+// Parts of a few pieces, put together in order.
+template <class Value, class Sum, class Body, class Join>
+Sum parallel_reduce(const blocked_range<Value>& range, const Sum& identity, const Body& body, const Join& join) {
+  std::mutex adding;
+  std::map<Value, Sum> parts;
+  parallel_for(range, [&](const blocked_range<Value>& piece) {
+    Sum sum = body(piece, identity);
+    const std::lock_guard<std::mutex> lock(adding);
+    parts.emplace(piece.begin(), std::move(sum));
+  });
+  Sum all = identity;
+  for (const auto& [begin, sum] : parts) all = join(all, sum);
+  return all;
+}
+
 template <class First, class Second>
 void parallel_invoke(const First& first, const Second& second) {
   plain::each(2, [&](std::size_t i) { i == 0 ? static_cast<void>(first()) : static_cast<void>(second()); });
@@ -122,6 +137,7 @@ class global_control {
   enum parameter { max_allowed_parallelism };
   global_control(parameter, std::size_t threads) : before_(plain::most().exchange(static_cast<int>(threads))) {}
   ~global_control() { plain::most() = before_; }
+  static std::size_t active_value(parameter) { return static_cast<std::size_t>(plain::most().load()); }
   global_control(const global_control&) = delete;
   global_control& operator=(const global_control&) = delete;
 
