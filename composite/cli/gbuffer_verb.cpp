@@ -11,6 +11,7 @@
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/shot.h"
+#include "engine_bridge/scene/set_keys.h"
 #include "engine_bridge/scene/working_space.h"
 
 namespace pellucid::cli {
@@ -47,13 +48,15 @@ void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
 RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, const std::function<void(double)>& told) {
   RenderedPart part;
   part.window = parseSize(flags.size);
-  checkFilter(flags);
+  checkRenderer(flags);
+  gltf::checkOverrides(flags.overrides);
   SceneOptions options;
   options.metresPerUnit = flags.unit;
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
   const std::optional<ShotMoment> moment = playAnimations(flags.time.time(), options);
+  checkBlur(flags, moment);
   part.space = spaceToRender(flags);
   flags.preview.check(flags.colour.request(), flags.assetRoot);
   Scene scene;
