@@ -53,6 +53,8 @@ struct Plan {
   const Kind* as() const {
     return std::get_if<Kind>(&paint);
   }
+  // From pass to pass: what shows in one pass may stand elsewhere in the next.
+  bool layersMove() const { return pictureMoves || (shutter && shutter->opens()); }
   bool isExact() const { return tier == Tier::exact; }
   bool isPublished() const { return tier == Tier::published; }
 };
