@@ -83,7 +83,7 @@ PlacedSums placedSumsOf(const PaintContext& context, const PassSettings& sample,
     if (planes == &sums.scatter && !planes->scatters()) continue;
     planes->camera = context.shot.camera;
     planes->info.weight = sample.weight;
-    planes->info.places = placesText(*context.picture.deepOpaque);
+    planes->info.places = placesText(*context.shot.deepOpaque);  // as they are at pixel centres
     planes->info.solidHash = gl::solidHash(planes->solid);
   }
   return sums;
