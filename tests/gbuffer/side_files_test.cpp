@@ -47,6 +47,16 @@ class SideFiles : public ::testing::Test {
   TemporaryFolder folder;
 };
 
+TEST_F(SideFiles, MapsOfSurroundingsAreNoPasses) {
+  for (const int kind : {0, 1}) {
+    Part part;
+    part.environmentMap = kind;
+    part.planes.push_back(constantPlane("Z", exr::FLOAT, 5.0f, 48));
+    writeFile(at("map.exr"), {part});
+    EXPECT_NE(refused([&] { read(at("map.exr")); }, 4).find("attribute envmap"), std::string::npos);
+  }
+}
+
 TEST_F(SideFiles, Names) {
   EXPECT_FALSE(sideFileOf("Z"));
   EXPECT_FALSE(sideFileOf("ViewLayer.Depth.Z"));
