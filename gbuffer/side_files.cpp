@@ -31,10 +31,9 @@ void append(const SideFile& side, const std::string& flag, const std::string& na
     if (part.display != display)
       throw MeaningError(fmt::format("{}: {}: found display window {}, expected {} of {}", side.path, flag,
                                      windowText(part.display), windowText(display), document.path));
-    if (part.attributes.contains("envmap"))
+    if (part.attributes.contains("envmap"))  // of a cube map readExr() has said so
       throw MeaningError(
-          fmt::format("{}: {}: attribute envmap: found a map of surroundings, expected a picture that a "
-                      "camera has taken",
+          fmt::format("{}: {}: attribute envmap: found a lat-long map, expected a picture that a camera has taken",
                       side.path, flag));
     part.from = side.path;
     part.name = name;
