@@ -9,6 +9,7 @@
 #include "composite/cli/results.h"
 #include "engine_bridge/embree/opaque_render.h"
 #include "engine_bridge/gl/opaque_pass.h"
+#include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -102,7 +103,8 @@ void checkRasterised(const GbufferFlags& flags) {
 
 }  // namespace
 
-void checkRenderer(const GbufferFlags& flags) {
+void checkFlags(const GbufferFlags& flags) {
+  gltf::checkOverrides(flags.overrides);
   checkFilter(flags);
   if (isColour(flags.environment)) parseColour(flags.environment, "--environment");
   flags.renderer == "gl" ? checkRasterised(flags) : checkTraced(flags);

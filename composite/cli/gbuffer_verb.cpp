@@ -11,7 +11,6 @@
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/shot.h"
-#include "engine_bridge/scene/set_keys.h"
 #include "engine_bridge/scene/working_space.h"
 
 namespace pellucid::cli {
@@ -48,8 +47,7 @@ void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
 RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, const std::function<void(double)>& told) {
   RenderedPart part;
   part.window = parseSize(flags.size);
-  checkRenderer(flags);
-  gltf::checkOverrides(flags.overrides);
+  checkFlags(flags);
   SceneOptions options;
   options.metresPerUnit = flags.unit;
   options.lumensPerWatt = flags.lumensPerWatt;
