@@ -19,8 +19,7 @@ std::string lower(std::string text) {
 
 class Finder {
  public:
-  Finder(const std::vector<NamedChannel>& named, const ExrPart& part, DeepChannels& channels)
-      : named_(named), part_(part), channels_(channels) {}
+  Finder(const std::vector<NamedChannel>& named, DeepChannels& channels) : named_(named), channels_(channels) {}
   int optional(const std::string& name) {
     const std::string found = nameOf(name);
     if (found.empty()) return -1;
@@ -34,7 +33,8 @@ class Finder {
  private:
   // The channel of that very name; else one of no layer in other letters; else the only one of any layer.
   std::string nameOf(const std::string& name) const {
-    if (part_.find(name)) return name;
+    const auto isNamed = [&](const NamedChannel& channel) { return channel.channel->name == name; };
+    if (std::any_of(named_.begin(), named_.end(), isNamed)) return name;
     if (name.find('.') != std::string::npos) return "";
     std::string plain, layered;
     bool two = false;
@@ -47,7 +47,6 @@ class Finder {
     return !plain.empty() ? plain : two ? "" : layered;
   }
   const std::vector<NamedChannel>& named_;
-  const ExrPart& part_;
   DeepChannels& channels_;
 };
 
@@ -61,6 +60,24 @@ std::string titleOf(const ExrPart& part) {
   return (part.name.empty() ? "without a name" : part.name) + (part.view.empty() ? "" : " (view " + part.view + ")");
 }
 
+bool isIn(const std::vector<std::string>& views, const std::string& view) {
+  return std::find(views.begin(), views.end(), view) != views.end();
+}
+
+// Whether the file's only part holds several views, told apart by the names of their channels.
+bool sharesViews(const ExrDocument& document) {
+  return document.parts.size() == 1 && document.parts[0].view.empty() && document.views.size() > 1;
+}
+
+// Of such a part the view to read; "" of others.
+std::string viewInPart(const ExrDocument& document, const std::string& view, std::string& note) {
+  if (!sharesViews(document)) return "";
+  if (!view.empty()) return view;
+  note = fmt::format("{}: of the views {} of its deep samples {} is taken; --view names another", document.path,
+                     fmt::join(document.views, ", "), document.views[0]);
+  return document.views[0];
+}
+
 // The part to read: the first deep one of the view.
 int deepPart(const ExrDocument& document, const std::string& view, std::string& note) {
   int found = -1, deep = 0;
@@ -70,7 +87,8 @@ int deepPart(const ExrDocument& document, const std::string& view, std::string& 
     if (!part.deep) continue;
     ++deep;
     all += (all.empty() ? "" : ", ") + titleOf(part);
-    if (found < 0 && (view.empty() || part.view == view)) found = static_cast<int>(i);
+    const bool holds = view.empty() || part.view == view || (sharesViews(document) && isIn(document.views, view));
+    if (found < 0 && holds) found = static_cast<int>(i);
   }
   if (deep == 0)
     throw MeaningError(fmt::format("{}: found a flat picture ({}), expected deep samples", document.path,
@@ -92,13 +110,15 @@ DeepChannels resolveDeep(const ExrDocument& document, const std::string& view) {
   channels.part = deepPart(document, view, channels.note);
   const ExrPart& part = document.parts[static_cast<std::size_t>(channels.part)];
   channels.chromaticities = chromaticitiesOf(part);
+  const std::string sharedView = viewInPart(document, view, channels.note);
   std::vector<NamedChannel> named = nameChannels(document);
   std::erase_if(named, [&](const NamedChannel& channel) { return channel.part != channels.part; });
   // Parts' names are layers to nameChannels; inside of one part they tell nothing apart.
   if (!part.name.empty())
     for (NamedChannel& channel : named)
       if (channel.channel->name.find('.') == std::string::npos) channel.layers.clear();
-  Finder find(named, part, channels);
+  if (!sharedView.empty()) std::erase_if(named, [&](const NamedChannel& one) { return one.view != sharedView; });
+  Finder find(named, channels);
   if (!find.has({"Z", "R", "G", "B"}))
     throw MeaningError(
         fmt::format("{}: found deep channels {}, expected Z, R, G, B and an opacity", path, namesOf(part)));

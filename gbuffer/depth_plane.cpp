@@ -4,22 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace pellucid {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr int kReach = 4;  // pixels to either side
+constexpr int kReach = kPlaneReach;
 // Two pixels side by side that continue nothing are taken for one surface where what is linear changes by less.
 constexpr double kPairChange = 1.0 / 16.0;
 constexpr double kGrazing = 1.0 / 64.0;  // a normal this square to the ray tells no slope
 
 // Along one axis through a pixel: what is linear on a plane, as a part of its value at the pixel.
 struct Line {
-  double value[2 * kReach + 1];
+  PlaneValues value;
   double rounding;  // of a second difference, by the precision of the depth
-  double at(int k) const { return value[k + kReach]; }
+  double at(int k) const { return value[static_cast<std::size_t>(k + kReach)]; }
   double bend(int k) const { return std::abs(at(k + 1) - 2.0 * at(k) + at(k - 1)); }  // NaN where one is missing
   bool straight(int k) const { return bend(k) <= rounding * std::max({1.0, at(k), at(k - 1), at(k + 1)}); }
 };
@@ -68,6 +67,16 @@ double pairSlope(const Line& line) {
     slope = side * change;
   }
   return slope;
+}
+
+// A second difference holds four values, each rounded by half of the precision at most.
+double roundingOf(double precision) {
+  return 2.0 * precision;
+}
+
+std::optional<double> slopeOf(const Line& line) {
+  const std::optional<double> slope = straightSlope(line);
+  return slope ? slope : curvedSlope(line);
 }
 
 // The slopes of planes by the normals of the file.
@@ -120,12 +129,16 @@ Line lineThrough(const Image<double>& linear, int x, int y, int dx, int dy, doub
   for (int k = -kReach; k <= kReach; ++k) {
     const int u = x + k * dx, v = y + k * dy;
     const bool inside = u >= 0 && v >= 0 && u < linear.width() && v < linear.height();
-    line.value[k + kReach] = inside ? linear.at(u, v) * scale : kNone;
+    line.value[static_cast<std::size_t>(k + kReach)] = inside ? linear.at(u, v) * scale : kNone;
   }
   return line;
 }
 
 }  // namespace
+
+std::optional<double> slopeAlong(const PlaneValues& values, double precision) {
+  return slopeOf({values, roundingOf(precision)});
+}
 
 DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
     : gbuffer_(gbuffer),
@@ -133,15 +146,13 @@ DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
       slopes_(gbuffer.viewZ.width(), gbuffer.viewZ.height(), glm::vec2(0.0f)) {
   const Image<double> linear = linearOf(gbuffer.viewZ, orthographic_);
   const NormalSlopes normals(gbuffer, camera);
-  // A second difference holds four values, each rounded by half of the precision at most.
-  const double rounding = 2.0 * static_cast<double>(gbuffer.depthPrecision);
+  const double rounding = roundingOf(static_cast<double>(gbuffer.depthPrecision));
   tbb::parallel_for(0, linear.height(), [&](int y) {
     for (int x = 0; x < linear.width(); ++x) {
       if (std::isnan(linear.at(x, y))) continue;
       for (const int axis : {0, 1}) {
         const Line line = lineThrough(linear, x, y, 1 - axis, axis, rounding);
-        std::optional<double> slope = straightSlope(line);
-        if (!slope) slope = curvedSlope(line);
+        std::optional<double> slope = slopeOf(line);
         if (!slope)
           if (const auto byNormal = normals.at(x, y, static_cast<double>(gbuffer.viewZ.at(x, y))))
             slope = (*byNormal)[axis];

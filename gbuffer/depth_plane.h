@@ -1,7 +1,9 @@
 // The opaque depth of a pixel and how it changes across it: what a sample elsewhere in the pixel meets.
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 
 #include "gbuffer/gbuffer.h"
 
@@ -19,6 +21,15 @@ struct DepthPlane {
     return orthographic ? centre * linear : centre / linear;
   }
 };
+
+constexpr int kPlaneReach = 4;  // neighbours to either side that tell a slope
+// What is linear on a plane, at the pixels of one row or column around a pixel, as a part of its value there, which is
+// the one in the middle; NaN where there is none.
+using PlaneValues = std::array<double, 2 * kPlaneReach + 1>;
+
+// Its change per pixel, told by the neighbours that continue each other; nothing where none do.
+//   precision  relative, of the depth
+std::optional<double> slopeAlong(const PlaneValues& values, double precision);
 
 // The planes of all pixels of a picture. Neighbours tell the slope: those that lie on one surface with the pixel, which
 // are the ones that continue each other. Where none do, as on a thing one pixel wide, the file's normal tells it; where

@@ -31,6 +31,10 @@ void append(const SideFile& side, const std::string& flag, const std::string& na
     if (part.display != display)
       throw MeaningError(fmt::format("{}: {}: found display window {}, expected {} of {}", side.path, flag,
                                      windowText(part.display), windowText(display), document.path));
+    if (part.attributes.contains("envmap"))  // of a cube map readExr() has said so
+      throw MeaningError(
+          fmt::format("{}: {}: attribute envmap: found a lat-long map, expected a picture that a camera has taken",
+                      side.path, flag));
     part.from = side.path;
     part.name = name;
     document.parts.push_back(std::move(part));

@@ -24,6 +24,12 @@ void writePreview(const FlattenFlags& flags, const FlatPicture& flat) {
   say(notes);
 }
 
+bool anyNegative(const Image<float>& z) {
+  for (std::size_t i = 0; i < z.size(); ++i)
+    if (z[i] < 0.0f) return true;
+  return false;
+}
+
 ExtraLayer layersOf(const FlatPicture& flat) {
   const int width = flat.data.width(), height = flat.data.height();
   const auto plane = [&](auto&& value) {
@@ -69,6 +75,8 @@ FlatPicture flattenFiles(const FlattenFlags& flags, Stages& stages, const std::f
   if (flat.oddities.notFinite) note("{} deep samples are not numbers and were skipped", flat.oddities.notFinite);
   if (flat.oddities.outOfRange)
     note("{} deep samples have an opacity outside 0 to 1, which was clamped", flat.oddities.outOfRange);
+  if (anyNegative(flat.frontZ))
+    note("deep samples have negative depth: the most negative of a pixel is taken as the nearest, as OpenEXR has it");
   writePreview(flags, flat);
   if (!flags.output.empty())
     stages.time("write", [&] {

@@ -66,22 +66,34 @@ Camera jittered(Camera camera, glm::dvec2 sample, const Window& display) {
   return camera;
 }
 
+bool blursAtAll(const GbufferFlags& flags) {
+  const LensRequest asked = flags.blur.lens();
+  const std::optional<Shutter> shutter = flags.blur.shutterAsked();
+  return (shutter && shutter->opens()) || (asked.on() && asked.radius.value_or(1.0) > 0.0);
+}
+
 }  // namespace
 
-OpaquePlanes renderBlurred(const GbufferFlags& flags, Scene& scene, SceneFiles& files,
-                           const std::optional<ShotMoment>& moment, const ColourSpace& space, const Camera& camera,
-                           const RenderOnce& render) {
+void checkBlur(const GbufferFlags& flags, const std::optional<ShotMoment>& moment) {
   const LensRequest asked = flags.blur.lens();
   const std::optional<Shutter> shutter = flags.blur.shutterAsked();
   checkLens(asked);
   if (shutter) checkShutter(*shutter);
   if (asked.on() && !asked.focus)
     throw UsageError("--focus: found auto, expected METRES: there is no picture yet whose depth could say it");
-  const bool poses = shutter && shutter->opens();
-  if (poses && !moment) throw UsageError("--shutter: found no time, expected --frame N or --time SECONDS");
-  const bool blurs = poses || (asked.on() && asked.radius.value_or(1.0) > 0.0);
-  if (!blurs && flags.passes)
+  if (shutter && shutter->opens() && !moment)
+    throw UsageError("--shutter: found no time, expected --frame N or --time SECONDS");
+  if (!blursAtAll(flags) && flags.passes)
     throw UsageError("--aa: found it without --shutter and without a lens, expected one: --samples are one render's");
+}
+
+OpaquePlanes renderBlurred(const GbufferFlags& flags, Scene& scene, SceneFiles& files,
+                           const std::optional<ShotMoment>& moment, const ColourSpace& space, const Camera& camera,
+                           const RenderOnce& render) {
+  const LensRequest asked = flags.blur.lens();
+  const std::optional<Shutter> shutter = flags.blur.shutterAsked();
+  const bool poses = shutter && shutter->opens();
+  const bool blurs = blursAtAll(flags);
   OpaquePlanes planes = render(camera, flags.samples);
   if (!blurs) return planes;
   GBuffer frame;

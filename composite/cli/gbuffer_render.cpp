@@ -9,6 +9,7 @@
 #include "composite/cli/results.h"
 #include "engine_bridge/embree/opaque_render.h"
 #include "engine_bridge/gl/opaque_pass.h"
+#include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -66,6 +67,8 @@ std::map<std::string, std::string> withSettings(const GbufferFlags& flags,
   return attributes;
 }
 
+namespace {
+
 void checkFilter(const GbufferFlags& flags) {
   if (flags.filter.empty()) return;
   parsePixelFilter(flags.filter);
@@ -77,15 +80,39 @@ void checkFilter(const GbufferFlags& flags) {
         "--filter: found {} with --samples 1, expected 2 or more: one sample is the pixel's centre", flags.filter));
 }
 
-OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
-                   std::optional<int> samples, const ColourSpace& space, const std::function<void(double)>& told,
-                   Stages& stages) {
+void checkTraced(const GbufferFlags& flags) {
   if (flags.textureFilter == "mipmap")
     throw UsageError(
         "--texture-filter: found mipmap, expected bilinear or nearest with --renderer embree: its samples filter");
   if (flags.textureFilter == "nearest")
     throw UsageError("--texture-filter: found nearest, expected bilinear with --renderer embree");
   if (flags.device >= 0) throw UsageError("--device: expected --renderer gl: Embree runs on the CPU");
+}
+
+void checkRasterised(const GbufferFlags& flags) {
+  if (flags.samples.value_or(1) != 1)
+    throw UsageError(
+        fmt::format("--samples: found {}, expected 1 with --renderer gl: it samples pixel centres", *flags.samples));
+  if (flags.shadows == "exact")
+    throw UsageError("--shadows: found exact, expected off with --renderer gl: it traces no rays");
+  if (flags.aoRadius.value_or(0.0) > 0.0)
+    throw UsageError("--ao-radius: expected --renderer embree: gl traces no rays");
+  if (!flags.environment.empty() && !isColour(flags.environment))
+    throw UsageError(fmt::format("--environment: found '{}', expected R,G,B with --renderer gl", flags.environment));
+}
+
+}  // namespace
+
+void checkFlags(const GbufferFlags& flags) {
+  gltf::checkOverrides(flags.overrides);
+  checkFilter(flags);
+  if (isColour(flags.environment)) parseColour(flags.environment, "--environment");
+  flags.renderer == "gl" ? checkRasterised(flags) : checkTraced(flags);
+}
+
+OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
+                   std::optional<int> samples, const ColourSpace& space, const std::function<void(double)>& told,
+                   Stages& stages) {
   OpaqueRenderSettings settings;
   settings.samples = samples.value_or(settings.samples);
   if (!flags.filter.empty()) settings.pixelFilter = parsePixelFilter(flags.filter);
@@ -108,21 +135,11 @@ OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& 
 
 OpaquePlanes rasterise(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,
                        Stages& stages, std::string& device) {
-  if (flags.samples.value_or(1) != 1)
-    throw UsageError(
-        fmt::format("--samples: found {}, expected 1 with --renderer gl: it samples pixel centres", *flags.samples));
-  if (flags.shadows == "exact")
-    throw UsageError("--shadows: found exact, expected off with --renderer gl: it traces no rays");
-  if (flags.aoRadius.value_or(0.0) > 0.0)
-    throw UsageError("--ao-radius: expected --renderer embree: gl traces no rays");
   OpaquePassSettings settings;
   settings.filter = flags.textureFilter == "bilinear"  ? TextureFilter::bilinear
                     : flags.textureFilter == "nearest" ? TextureFilter::nearest
                                                        : TextureFilter::mipmap;
-  if (isColour(flags.environment))
-    settings.surroundings = parseColour(flags.environment, "--environment");
-  else if (!flags.environment.empty())
-    throw UsageError(fmt::format("--environment: found '{}', expected R,G,B with --renderer gl", flags.environment));
+  if (isColour(flags.environment)) settings.surroundings = parseColour(flags.environment, "--environment");
   GlContext context(flags.device);
   device = context.description();
   return stages.time("rasterise", [&] { return rasteriseOpaque(context, scene, camera, window, window, settings); });

@@ -66,9 +66,10 @@ Window parseSize(const std::string& text);  // "1920x1080"; throws UsageError
 // The attributes with those of the filter, where it is not the pixel's square, of the frame and of the shutter.
 std::map<std::string, std::string> withSettings(const GbufferFlags& flags,
                                                 std::map<std::string, std::string> attributes);
-void checkFilter(const GbufferFlags& flags);  // that the renderer honours it; throws UsageError
+// What needs no scene: that the renderer honours the flags. Throws UsageError.
+void checkFlags(const GbufferFlags& flags);
 
-// Rays, and triangles at pixel centres. Both throw UsageError for flags that the other alone honours.
+// Rays, and triangles at pixel centres, by flags that checkFlags() has taken.
 //   samples  a pixel; else as many as usual
 //   told     the share of the picture that is done; may be null
 OpaquePlanes trace(const GbufferFlags& flags, const Scene& scene, const Camera& camera, const Window& window,

@@ -47,13 +47,14 @@ void gbuffer(const GbufferFlags& flags, const FrameRun& frame) {
 RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, const std::function<void(double)>& told) {
   RenderedPart part;
   part.window = parseSize(flags.size);
-  checkFilter(flags);
+  checkFlags(flags);
   SceneOptions options;
   options.metresPerUnit = flags.unit;
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
   const std::optional<ShotMoment> moment = playAnimations(flags.time.time(), options);
+  checkBlur(flags, moment);
   part.space = spaceToRender(flags);
   flags.preview.check(flags.colour.request(), flags.assetRoot);
   Scene scene;

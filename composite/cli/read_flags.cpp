@@ -32,7 +32,8 @@ void ReadFlags::addTo(CLI::App& verb, bool allViews) {
         }
         return "";
       });
-  verb.add_option("--far", farValue, "Depth, in the file's unit, from which nothing was hit");
+  verb.add_option("--far", farValue, "Depth, in the file's unit, from which nothing was hit")
+      ->check(CLI::NonNegativeNumber);
   verb.add_option("--unit", unit,
                   "Metres in one unit of the picture's depth, positions and camera, and of deep files; without it what "
                   "the preset says, else 1. --scene-unit is the glTF's")

@@ -41,6 +41,7 @@ DeepOpaque readDeepOpaque(const std::string& path, const DeepChannels& channels,
       pixel.clear();
       for (std::uint64_t k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
         DeepSample sample;
+        opaque.stored.add(static_cast<double>(rows.channels[static_cast<std::size_t>(channels.z)][k]));
         if (sampleAt(channels, rows, k, depth, px, py, sample, opaque.oddities) && sample.z > 0.0)
           pixel.push_back(sample);
       }
@@ -81,13 +82,14 @@ HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool ev
                               static_cast<std::size_t>(left + x);
       const auto upTo = [&](float z, std::uint64_t sample) {
         bool bent = false;
+        const float reach = z * (1.0f + opaque.depthPrecision);
         for (std::uint64_t i = first; i < last; ++i) {
-          if (lists.fragments[i].z > z) continue;
+          if (lists.fragments[i].z > reach) continue;
           row.fragments.push_back(lists.fragments[i]);
           bent = bent || bends(lists.fragments[i]);
           if (lists.disperses()) row.dispersion.push_back(lists.dispersion[i]);
         }
-        solids.push_back(solid.a <= z ? solid : glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
+        solids.push_back(solid.a <= reach ? solid : glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
         row.offsets.push_back(row.fragments.size());
         held.pixel.emplace_back(lists.window.x0 + x, lists.window.y0 + y);
         held.z.push_back(z);

@@ -1,6 +1,8 @@
 // A deep picture as the opaque one: each of its samples holds transparent layers out on its own, so that edges between
 // near and far surfaces stay clean.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -19,12 +21,29 @@ struct OpaqueSample {
   glm::vec3 light;  // premultiplied by the share
 };
 
+// Depths of samples as the file has them.
+struct StoredDepths {
+  std::size_t negative = 0, positive = 0;  // samples
+  double least = 0, most = 0;              // of finite ones; both 0 where there are none
+
+  void add(double depth) {
+    const bool any = negative + positive > 0;
+    if (!std::isfinite(depth) || depth == 0.0) return;
+    ++(depth < 0.0 ? negative : positive);
+    least = any ? std::min(least, depth) : depth;
+    most = any ? std::max(most, depth) : depth;
+  }
+};
+
 struct DeepOpaque {
   Window display, data;
   std::vector<std::uint64_t> offsets;  // width * height + 1: pixel i owns samples [offsets[i], offsets[i + 1])
   std::vector<OpaqueSample> samples;   // front to back
   Image<glm::vec4> flat;               // the picture they make: premultiplied, and alpha
-  Image<float> farthest;               // behind it the pixel shows nothing; +inf where something shows through
+  // Of depth, relative: a layer at z <= that of a sample * (1 + depthPrecision) is in front of it.
+  float depthPrecision = 0x1p-20f;
+  Image<float> farthest;  // behind it the pixel shows nothing; +inf where something shows through
+  StoredDepths stored;
   DeepOddities oddities;
 };
 

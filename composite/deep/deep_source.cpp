@@ -177,6 +177,9 @@ class DeepMerge {
         if (!sampleAt(source.channels_, rows_[s], i, source.depth_, x, y, sample, oddities[s])) continue;
         if (source.toSpace_) convert(*source.toSpace_, sample);
         if (!(sample.z > 0.0) || sample.z > surface) continue;  // behind the camera or the surface
+        // A record may bend or spread light without hiding any; nothing else is a layer that does neither.
+        if (!source.channels_.hasRecord() && sample.opacity == glm::dvec4(0.0) && sample.light == glm::dvec3(0.0))
+          continue;
         if (sample.isVolume() && sample.zBack > surface) sample = partOfVolume(sample, sample.z, surface);
         const bool opaque = sample.opacity.x >= 1.0 && sample.opacity.y >= 1.0 && sample.opacity.z >= 1.0;
         if (opaque) {

@@ -167,7 +167,9 @@ TransparentPass* Compositor::triangles() {
 }
 
 const DepthPlanes* Compositor::depthPlanes(const Plan& plan) {
-  if ((plan.passes == 1 && !plan.pictureMoves) || shot_->deepOpaque) return nullptr;
+  if (plan.passes == 1 && !plan.pictureMoves) return nullptr;
+  // Deep layers belong to whole pixels: they are held out by what lies at the pixel's centre.
+  if (shot_->deepOpaque && (plan.pictureMoves || !shot_->deep.empty())) return nullptr;
   if (!depthPlanes_)
     depthPlanes_ = journal_.time("depth planes",
                                  [&] { return std::make_unique<DepthPlanes>(shot_->opaque.gbuffer, shot_->camera); });

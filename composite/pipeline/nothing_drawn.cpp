@@ -15,7 +15,8 @@ void noteThatNothingShows(const Shot& shot, Journal& journal) {
   std::string why;
   if (shot.hasScene) why = whyNothingShows(shot.scene, shot.camera, shot.opaque.gbuffer);
   if (!shot.deep.empty())
-    why += std::string(why.empty() ? "" : "; ") + "no deep sample lies before what the picture shows";
+    why += std::string(why.empty() ? "" : "; ") +
+           "no deep sample that hides or adds anything lies before what the picture shows";
   journal.note(fmt::format("{}: nothing of it shows in the picture: {}", fmt::join(paths, ", "), why));
 }
 

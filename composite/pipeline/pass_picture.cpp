@@ -27,6 +27,11 @@ PassPicture::PassPicture(const LitPicture& centres, const DepthPlanes* planes, c
   moved_.depthPrecision = own.depthPrecision;
   moved_.camera = own.camera;
   picture_.gbuffer = &moved_;
+  if (centres.deepOpaque) {
+    samplePlanes_.emplace(*centres.deepOpaque, camera.orthographic);
+    movedDeep_ = *centres.deepOpaque;
+    picture_.deepOpaque = &movedDeep_;
+  }
   if (!edges_ || edges_->empty()) return;
   passWeight_ = Image<float>(moved_.data.width(), moved_.data.height(), 1.0f);
   picture_.passWeight = &passWeight_;
@@ -53,7 +58,10 @@ Image<float> PassPicture::unseenShare() const {
 void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
   if (lit) {
     picture_.centres = lit->centres;
-    picture_.deepOpaque = lit->deepOpaque;
+    if (samplePlanes_)
+      movedDeep_ = *lit->deepOpaque;
+    else
+      picture_.deepOpaque = lit->deepOpaque;
     if (planes_)
       moved_.beauty = lit->gbuffer->beauty;
     else
@@ -61,10 +69,14 @@ void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
   }
   ++counted_;
   if (!planes_) return;
-  if (sameView(camera_, taken_))
+  if (samplePlanes_) {
+    samplePlanes_->moveTo(sample, movedDeep_);
+    moved_.viewZ = movedDeep_.farthest;
+  } else if (sameView(camera_, taken_)) {
     planes_->depthAt(sample, part_, moved_.viewZ);
-  else
+  } else {
     moveDepth(sample);
+  }
   if (edges_) {
     edges_->depthAt(pass, moved_.viewZ);
     if (picture_.passWeight) edges_->weightAt(pass, passWeight_);

@@ -1,7 +1,8 @@
 // The opaque picture as one jittered pass sees it.
 #pragma once
-#include <memory>
+#include <optional>
 
+#include "composite/deep/sample_planes.h"
 #include "composite/edges.h"
 #include "composite/pipeline/lighting.h"
 #include "engine_bridge/gl/transparent_pass.h"
@@ -10,8 +11,8 @@
 namespace pellucid {
 
 // The picture whose depth moves with the passes: whatever reads it, layers, fog, low resolution or samples, meets the
-// opaque surface where the pass samples the pixel, and needs to know nothing of it. Where a pass samples pixel centres,
-// and where the picture is deep, it is the picture itself.
+// opaque surface where the pass samples the pixel, and needs to know nothing of it. Of a deep picture all samples move.
+// Where a pass samples pixel centres it is the picture itself.
 class PassPicture {
  public:
   // The others must outlive this.
@@ -44,8 +45,10 @@ class PassPicture {
   TransparentPass* triangles_;
   const Camera taken_;
   const Camera& camera_;
-  Window part_;    // in pixels of the data window
-  GBuffer moved_;  // depth, and what says how to read it
+  Window part_;                               // in pixels of the data window
+  GBuffer moved_;                             // depth, and what says how to read it
+  std::optional<SamplePlanes> samplePlanes_;  // of a deep picture
+  DeepOpaque movedDeep_;
   Image<float> passWeight_;
   Image<int> unseen_;  // passes; empty while nobody asks
   int counted_ = 0;

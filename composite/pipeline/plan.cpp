@@ -87,6 +87,7 @@ Route routeOf(const Plan& plan, const ShotFacts& facts) {
   if (plan.as<PaintSystems>()) return Route::systems;
   if (const auto* samples = plan.as<PaintSamples>()) return samples->onDevice ? Route::samplesOnDevice : Route::lists;
   if (!plan.as<PaintSums>() || plan.heldOut) return Route::lists;
+  if (plan.counts && (plan.fog || plan.lowResolution > 1)) return Route::foldedSums;
   return plan.isExact() || plan.deepFiles || !facts.hasScene ? Route::foldedSums : Route::drawnSums;
 }
 
@@ -235,6 +236,7 @@ Plan sumsPlanOf(const Plan& plan, const ShotFacts& facts) {
   if (listed && formulaOf(listed->method.name) != SumFormula::mean) {  // of plain sums, without a weight
     sums.pass.weight.kind = shading::PLD_WEIGHT_UNIFORM;
     sums.pass.normalisation = shading::PLD_NORMALISE_SPECTRAL;
+    sums.counts = listed->method;
   }
   sums.paint = PaintSums{};
   sums.heldOut = false;

@@ -2,6 +2,7 @@
 // holds. Everything below it obeys; nothing below it decides.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,9 @@ struct Plan {
   bool pictureMoves = false;       // from pass to pass: the camera moves, or a lens is open
   bool edges = false;              // filtered edges of the picture are taken apart
   int lowResolution = 1;           // pixels per texel of marked materials
+  // Of sums that resolve as a method which counts its layers, the method: fog enters them in runs, and what is drawn at
+  // low resolution as layers that it has composited, as in its own lists.
+  std::optional<ChosenMethod> counts;
   std::uint64_t bytes = 0;         // held at once besides the picture, about
   std::vector<std::string> notes;  // what was left out or done otherwise than asked, and why: one sentence each
 
@@ -50,6 +54,8 @@ struct Plan {
   const Kind* as() const {
     return std::get_if<Kind>(&paint);
   }
+  // From pass to pass: what shows in one pass may stand elsewhere in the next.
+  bool layersMove() const { return pictureMoves || (shutter && shutter->opens()); }
   bool isExact() const { return tier == Tier::exact; }
   bool isPublished() const { return tier == Tier::published; }
 };

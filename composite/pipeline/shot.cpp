@@ -55,6 +55,24 @@ DepthConverter deepDepth(const ReadOptions& options, const Camera* camera, const
           display, path + ": deep samples"};
 }
 
+// What deep samples are read as where their numbers cannot be planar depth, "" where they can. What looks doubtful is
+// noted, as of flat pictures.
+std::string kindByNumbers(const StoredDepths& stored, OpaqueFile& file) {
+  const std::string which = fmt::format("depth {} of deep samples", file.choice.depthChannel);
+  if (stored.negative > 0 && stored.positive == 0) {
+    file.notes.push_back(
+        fmt::format("{} is negative, {:.6g} to {:.6g}: read as minus planar depth; --depth-kind says otherwise", which,
+                    stored.least, stored.most));
+    return depthKindText({DepthMeaning::negative});
+  }
+  if (stored.positive > 0 && stored.negative == 0 && stored.most <= 1.0)
+    file.notes.push_back(
+        fmt::format("{} lies within 0 to 1, {:.6g} to {:.6g}, and is read as metres of {:g}: if it is normalised, give "
+                    "--depth-kind normalised:NEAR:FAR[:inverted]",
+                    which, stored.least, stored.most, file.metresPerUnit));
+  return "";
+}
+
 // A picture all of whose parts are deep becomes its samples, and what it flattens to.
 OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const Camera* camera,
                          std::unique_ptr<DeepOpaque>& deep) {
@@ -77,18 +95,32 @@ OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const
   file.space = statedSpace(part, "", file.notes);
   if (options.framingAlone) return file;
   if (!camera && file.gbuffer.camera) camera = &*file.gbuffer.camera;
-  const DepthConverter depth = deepDepth(options, camera, part.display, file.document.path);
-  file.choice.depthKind = depthKindText(depth.kind());
-  deep = std::make_unique<DeepOpaque>(readDeepOpaque(file.document.path, channels, depth));
+  const auto readAs = [&](const ReadOptions& asked) {
+    const DepthConverter depth = deepDepth(asked, camera, part.display, file.document.path);
+    file.choice.depthKind = depthKindText(depth.kind());
+    deep = std::make_unique<DeepOpaque>(readDeepOpaque(file.document.path, channels, depth));
+    const ExrChannel* stored = part.find(file.choice.depthChannel);
+    if (stored && stored->type == PixelType::half) deep->depthPrecision = 0x1p-10f;
+  };
+  readAs(options);
+  if (options.depthKind.empty()) {  // nobody said what the numbers mean, so they have a say, as of flat pictures
+    ReadOptions settled = options;
+    settled.depthKind = kindByNumbers(deep->stored, file);
+    if (!settled.depthKind.empty()) readAs(settled);
+  }
   const DeepOpaque& samples = *deep;
+  file.choice.least = samples.stored.least;
+  file.choice.most = samples.stored.most;
   file.gbuffer.beauty = samples.flat;
   file.gbuffer.hasAlpha = true;
   file.gbuffer.viewZ = samples.farthest;
+  file.gbuffer.depthPrecision = samples.depthPrecision;
   if (!channels.note.empty()) file.notes.push_back(channels.note);
-  file.notes.push_back(
-      fmt::format("a deep picture: its {} samples hold transparent layers out one by one; depth: {}, {}, 1 unit is "
-                  "{:g} m",
-                  samples.samples.size(), file.choice.depthChannel, depthKindWords(depth.kind()), file.metresPerUnit));
+  file.notes.push_back(fmt::format(
+      "a deep picture: its {} samples hold transparent layers out one by one; depth: {}, {}, {:.6g} to "
+      "{:.6g}, 1 unit is {:g} m",
+      samples.samples.size(), file.choice.depthChannel, depthKindWords(parseDepthKind(file.choice.depthKind)),
+      file.choice.least, file.choice.most, file.metresPerUnit));
   if (samples.oddities.notFinite)
     file.notes.push_back(fmt::format("{} deep samples are not numbers and were skipped", samples.oddities.notFinite));
   return file;

@@ -1,9 +1,12 @@
 #include "composite/pipeline/sums.h"
 
+#include <optional>
+
 #include "composite/fog.h"
 #include "composite/fold.h"
 #include "composite/fold_exact.h"
 #include "composite/fold_published.h"
+#include "composite/pipeline/low_layers.h"
 #include "engine_bridge/gl/solid_hash.h"
 
 namespace pellucid {
@@ -43,20 +46,35 @@ OitPlanes drawnSums(const PaintContext& context, const PassSettings& sample) {
   return planes;
 }
 
+// What is drawn at low resolution, as layers of the method that counts them, which reads no number of the pass.
+LowResolutionFragments countedTexels(const PaintContext& context, const PassSettings& sample,
+                                     PassStatistics& statistics) {
+  const std::unique_ptr<Mixer> mixer = methodMixer(*context.plan.counts);
+  return lowLayersOf(context, sample, 0, *mixer, statistics);
+}
+
 OitPlanes foldedSums(const PaintContext& context, const PassSettings& sample) {
   const GBuffer& gbuffer = *context.picture.gbuffer;
   PassSettings part = fullResolutionPart(context.plan, sample);
-  part.fog = nullptr;  // it enters the sums as the device has it do, not as runs
+  const bool counts = context.plan.counts.has_value();
+  if (!counts) part.fog = nullptr;  // it enters the sums as the device has it do, not as runs
   OitPlanes planes = emptySums(context.plan, sample, gbuffer.display, areaOf(sample, gbuffer.data));
   PublishedClamps clamps;
   TransparentPass* pass = context.sources.triangles();
+  std::optional<LowResolutionFragments> low;
+  PassStatistics texels;
+  if (counts && context.plan.lowResolution > 1) low.emplace(countedTexels(context, sample, texels));
   context.sources.each({part, context.picture, VolumeRule::midDepth}, [&](const FragmentLists& lists) {
     if (!pass) context.counts.fragments += lists.fragments.size();
-    foldInto(context.plan, lists, part, planes, clamps);
+    if (low)
+      foldInto(context.plan, low->among(lists), part, planes, clamps);
+    else
+      foldInto(context.plan, lists, part, planes, clamps);
   });
   PassStatistics statistics = pass ? pass->statistics() : PassStatistics();
-  addLow(context, sample, planes, statistics);
-  if (sample.fog) addFog(*sample.fog, gbuffer, sample.sample, planes, &clamps);
+  if (low) countLow(texels, context.plan.lowResolution, statistics);
+  if (!counts) addLow(context, sample, planes, statistics);
+  if (!counts && sample.fog) addFog(*sample.fog, gbuffer, sample.sample, planes, &clamps);
   if (pass) context.counts.add(statistics);
   context.counts.clamps += clamps;
   planes.camera = context.shot.camera;

@@ -8,6 +8,7 @@
 #include "composite/pipeline/memory_picture.h"
 #include "composite/pipeline/refusals.h"
 #include "composite/pipeline/shadow_step.h"
+#include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid {
@@ -18,6 +19,7 @@ void validate(const Request& request) {
       throw UsageError(fmt::format("{}: found {} with {}, expected {}: {}", row.flag, row.found,
                                    fmt::format(fmt::runtime(row.with), request.method), row.expected, row.why));
   checkMemoryPicture(request.shot);
+  gltf::checkOverrides(request.shot.scene.overrides);
   checkTime(request.shot.time);
   if (request.shutter) checkShutter(*request.shutter);
   checkLens(request.lens);

@@ -185,6 +185,10 @@ void StochasticPass::Impl::read(const Window& part, StochasticPlanes& planes) {
 StochasticPass::StochasticPass(GlContext&, const Scene& scene, const GBuffer& gbuffer, const Camera& camera)
     : impl_(new Impl(scene, gbuffer, camera)) {}
 
+void StochasticPass::pose(const Camera& camera) {
+  impl_->renderer.pose(camera);
+}
+
 void StochasticPass::over(const GBuffer& gbuffer, const Camera& camera) {
   impl_->renderer.over(gbuffer, camera);
   impl_->gbuffer = &gbuffer;

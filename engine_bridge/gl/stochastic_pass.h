@@ -31,7 +31,8 @@ class StochasticPass {
   StochasticPass(GlContext& context, const Scene& scene, const GBuffer& gbuffer, const Camera& camera);
   ~StochasticPass();
 
-  // As TransparentPass::over().
+  // As TransparentPass has them.
+  void pose(const Camera& camera);
   void over(const GBuffer& gbuffer, const Camera& camera);
 
   // Whether layers refract or diffuse under these settings, which this pass leaves out.

@@ -181,14 +181,23 @@ struct MaterialReader {
 
 Support supportFor(const std::string& extension) {
   using namespace std::string_view_literals;
-  constexpr std::string_view kRead[] = {"EXT_mesh_gpu_instancing"sv,  "EXT_meshopt_compression"sv,
-                                        "KHR_animation_pointer"sv,    "KHR_draco_mesh_compression"sv,
-                                        "KHR_lights_punctual"sv,      "KHR_materials_diffuse_transmission"sv,
-                                        "KHR_materials_dispersion"sv, "KHR_materials_emissive_strength"sv,
-                                        "KHR_materials_ior"sv,        "KHR_materials_pbrSpecularGlossiness"sv,
-                                        "KHR_materials_specular"sv,   "KHR_materials_transmission"sv,
-                                        "KHR_materials_unlit"sv,      "KHR_materials_volume"sv,
-                                        "KHR_mesh_quantization"sv,    "KHR_node_visibility"sv,
+  constexpr std::string_view kRead[] = {"EXT_mesh_gpu_instancing"sv,
+                                        "EXT_meshopt_compression"sv,
+                                        "EXT_texture_webp"sv,
+                                        "KHR_animation_pointer"sv,
+                                        "KHR_draco_mesh_compression"sv,
+                                        "KHR_lights_punctual"sv,
+                                        "KHR_materials_diffuse_transmission"sv,
+                                        "KHR_materials_dispersion"sv,
+                                        "KHR_materials_emissive_strength"sv,
+                                        "KHR_materials_ior"sv,
+                                        "KHR_materials_pbrSpecularGlossiness"sv,
+                                        "KHR_materials_specular"sv,
+                                        "KHR_materials_transmission"sv,
+                                        "KHR_materials_unlit"sv,
+                                        "KHR_materials_volume"sv,
+                                        "KHR_mesh_quantization"sv,
+                                        "KHR_node_visibility"sv,
                                         "KHR_texture_transform"sv};
   constexpr std::string_view kHarmless[] = {"KHR_xmp"sv, "KHR_xmp_json_ld"sv, "KHR_materials_variants"sv};
   if (std::find(std::begin(kRead), std::end(kRead), extension) != std::end(kRead)) return Support::full;

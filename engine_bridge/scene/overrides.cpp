@@ -24,35 +24,48 @@ std::string materialNames(const std::vector<Material>& materials) {
   return list.empty() ? "none" : list;
 }
 
+// "MATERIAL.key=value", taken apart.
+struct Override {
+  std::string material, key, value;
+};
+
+Override takeApart(const std::string& text) {
+  // From the right: names of materials may hold dots and equals signs, keys and values do not.
+  const std::size_t equals = text.rfind('=');
+  const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
+  if (dot == std::string::npos || dot == 0)
+    throw UsageError(fmt::format("--set {}: expected MATERIAL.key=value", text));
+  // A value may hold a dot (0.5), so the key's dot is the last one before the equals sign.
+  return {text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1)};
+}
+
+void put(const Override& each, const std::string& text, Material& material) {
+  const SetResult result = setKey(material, each.key, each.value);
+  if (result == SetResult::unknownKey)
+    throw UsageError(fmt::format("--set {}: unknown key {}; the keys are {}", text, each.key, setKeyForms()));
+  if (result == SetResult::badValue)
+    throw UsageError(fmt::format("--set {}: found the value {}; the keys are {}", text, each.value, setKeyForms()));
+}
+
 }  // namespace
+
+void checkOverrides(const std::vector<std::string>& overrides) {
+  Material none;
+  for (const std::string& text : overrides) put(takeApart(text), text, none);
+}
 
 void applyOverrides(const std::vector<std::string>& overrides, std::vector<Material>& materials) {
   for (const std::string& text : overrides) {
-    // From the right: names of materials may hold dots and equals signs, keys and values do not.
-    const std::size_t equals = text.rfind('=');
-    const std::size_t dot = equals == std::string::npos ? equals : text.rfind('.', equals);
-    if (dot == std::string::npos || dot == 0) {
-      throw UsageError(fmt::format("--set {}: expected MATERIAL.key=value", text));
-    }
-    // A value may hold a dot (0.5), so the key's dot is the last one before the equals sign.
-    const std::string name = text.substr(0, dot), key = text.substr(dot + 1, equals - dot - 1);
+    const Override each = takeApart(text);
     bool found = false;
     for (Material& material : materials) {
-      if (material.name != name) continue;
+      if (material.name != each.material) continue;
       found = true;
-      const SetResult result = setKey(material, key, text.substr(equals + 1));
-      if (result == SetResult::unknownKey) {
-        throw UsageError(fmt::format("--set {}: unknown key {}; the keys are {}", text, key, setKeyForms()));
-      }
-      if (result == SetResult::badValue) {
-        throw UsageError(
-            fmt::format("--set {}: found the value {}; the keys are {}", text, text.substr(equals + 1), setKeyForms()));
-      }
+      put(each, text, material);
     }
-    if (!found) {
-      throw UsageError(
-          fmt::format("--set {}: no material is named {}; the materials are {}", text, name, materialNames(materials)));
-    }
+    if (!found)
+      throw UsageError(fmt::format("--set {}: no material is named {}; the materials are {}", text, each.material,
+                                   materialNames(materials)));
   }
 }
 

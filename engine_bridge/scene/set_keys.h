@@ -24,6 +24,9 @@ const std::vector<SetKey>& setKeys();
 enum class SetResult { done, unknownKey, badValue };
 SetResult setKey(Material& material, const std::string& key, const std::string& value);
 
+// What needs no scene: the form, the keys and the values of --set MATERIAL.key=value. Throws UsageError.
+void checkOverrides(const std::vector<std::string>& overrides);
+
 std::string setKeyNames();  // "thin, collimation, ...", for help
 std::string setKeyForms();  // "thin (true or false), collimation (0 to 1), ...", for messages
 std::string setKeysHelp();  // a line for every row

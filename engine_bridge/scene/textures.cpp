@@ -142,13 +142,16 @@ Texture TextureReader::open(std::size_t index, TexelUse use, const std::string& 
 }
 
 int TextureReader::load(const JsonView& texture, TexelUse use, float glossiness, const std::string& material) {
-  const std::optional<JsonView> source = texture.find("source");
+  // The plain source of a texture that has this extension is for readers without WebP.
+  const std::optional<JsonView> webp = texture.extension("EXT_texture_webp");
+  std::optional<JsonView> source = webp ? webp->find("source") : std::nullopt;
+  if (!source) source = texture.find("source");
   if (!source) {
     const std::optional<JsonView> extensions = texture.find("extensions");
     const std::vector<std::string> names = extensions ? extensions->keys() : std::vector<std::string>{};
     throw MeaningError(
-        printable(fmt::format("{}: material {}: {} has no PNG or JPEG source{}; expected one", file_->path(), material,
-                              texture.where(), names.empty() ? "" : ", only " + names.front())));
+        printable(fmt::format("{}: material {}: {} has no PNG, JPEG or WebP source{}; expected one", file_->path(),
+                              material, texture.where(), names.empty() ? "" : ", only " + names.front())));
   }
   const std::size_t index = source->index(file_->count("images"), "images");
   Sampling sampling;

@@ -1,6 +1,7 @@
 // A run that changes nothing says so, and why. Cameras that are one camera.
 #include <gtest/gtest.h>
 
+#include "gbuffer/deep_io.h"
 #include "gbuffer/exr_document.h"
 #include "tests/support/exr_shots.h"
 #include "tests/support/program.h"
@@ -64,6 +65,25 @@ TEST_F(NothingDrawn, BehindTheWall) {
 }
 TEST_F(NothingDrawn, BesideThePicture) {
   expectSaid({pane(-3, "BLEND", 60)}, "outside the picture");
+}
+
+// Deep samples without light and opacity, as renderers write them where a thing was only just missed.
+TEST_F(NothingDrawn, DeepSamplesOfNothing) {
+  DeepHeader header;
+  header.display = header.data = {0, 0, 16, 16};
+  header.channels = {"A", "B", "G", "R", "Z"};
+  DeepWriter writer(folder + "/deep.exr", header);
+  DeepRows rows;
+  rows.window = header.data;
+  rows.channels.assign(5, std::vector<float>(16 * 16, 0.0f));
+  rows.channels[4].assign(16 * 16, 3.0f);
+  for (std::uint64_t i = 0; i <= 16 * 16; ++i) rows.offsets.push_back(i);
+  writer.write(rows);
+  writer.finish();
+  const Ended ended = run({"composite", "opaque.exr", "deep.exr", "-o", "out.exr"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("deep.exr: nothing of it shows in the picture: no deep sample"), std::string::npos)
+      << ended.err;
 }
 
 TEST_F(NothingDrawn, WhatShowsIsNotMentioned) {

@@ -111,6 +111,28 @@ TEST_F(Reading, DeepSamplesHaveTheirDepthKind) {
   EXPECT_EQ(composite("wall.exr", "near.exr", {"--depth-kind", "auto"}).code, 2);
 }
 
+TEST_F(Reading, SaysWhatDeepDepthWasTakenFor) {
+  pane("before.glb", 1.5f);
+  pane("behind.glb", 8);
+  const auto expectWords = [&](const std::string& scene, std::size_t shown, std::vector<const char*> words) {
+    const Ended ended = composite("wall.exr", scene);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(changed(.2f), shown) << scene;
+    for (const char* each : words) EXPECT_NE(ended.err.find(each), std::string::npos) << each << " in\n" << ended.err;
+  };
+  deep("wall.exr", .2f, 1, [](double) { return 4.5; });
+  expectWords("before.glb", 256, {"depth: Z, planar depth (planar), 4.5 to 4.5, 1 unit is 1 m"});
+  // Without a word of --depth-kind, as of flat pictures.
+  deep("wall.exr", .2f, 1, [](double) { return -4.5; });
+  expectWords("before.glb", 256, {"is negative, -4.5 to -4.5", "(negative), -4.5 to -4.5"});
+  expectWords("behind.glb", 0, {"is negative"});
+  deep("wall.exr", .2f, 1, [](double) { return 0.5; });
+  expectWords("behind.glb", 0, {"lies within 0 to 1, 0.5 to 0.5", "--depth-kind normalised:NEAR:FAR"});
+  deep("wall.exr", .2f, 1, [](double) { return -4.5; });
+  EXPECT_NE(runProgram({"flatten", "wall.exr", "-o", "flat.exr"}, options).err.find("negative depth"),
+            std::string::npos);
+}
+
 TEST_F(Reading, SamplesAtInfinityAreFar) {
   deep("sky.exr", .4f, 1, [](double) { return std::numeric_limits<double>::infinity(); });
   deep("near.exr", .1f, .5f, [](double) { return 1.0; });

@@ -47,6 +47,18 @@ class SideFiles : public ::testing::Test {
   TemporaryFolder folder;
 };
 
+TEST_F(SideFiles, MapsOfSurroundingsAreNoPasses) {
+  const auto expectRefused = [&](int kind, int code, const char* words) {
+    Part part;
+    part.environmentMap = kind;
+    part.planes.push_back(constantPlane("Z", exr::FLOAT, 5.0f, 48));
+    writeFile(at("map.exr"), {part});
+    EXPECT_NE(refused([&] { read(at("map.exr")); }, code).find(words), std::string::npos);
+  };
+  expectRefused(0, 4, "attribute envmap: found a lat-long map");
+  expectRefused(1, 3, "found a cube map");
+}
+
 TEST_F(SideFiles, Names) {
   EXPECT_FALSE(sideFileOf("Z"));
   EXPECT_FALSE(sideFileOf("ViewLayer.Depth.Z"));

@@ -234,6 +234,28 @@ TEST(Textures, WebpKeepsItsStraightColours) {
   EXPECT_LT(worst, 1e-6) << "alpha is kept without loss";
 }
 
+// The plain source beside the extension's is for readers without WebP; without one the extension is required.
+TEST(Textures, WebpByItsExtension) {
+  std::vector<std::uint8_t> texels;
+  for (int i = 0; i < 16; ++i)
+    for (const std::uint8_t v : {0, 0, 255}) texels.push_back(v);
+  const std::vector<std::uint8_t> blue = encode("webp", 4, 4, 3, OIIO::TypeDesc::UINT8, texels);
+  for (const bool beside : {true, false}) {
+    Builder builder = withImage(redPng());
+    builder.json["images"].push_back({{"bufferView", builder.view(blue.data(), blue.size())}});
+    Json& texture = builder.json["textures"][0];
+    texture["extensions"]["EXT_texture_webp"]["source"] = 1;
+    builder.json["extensionsUsed"] = {"EXT_texture_webp"};
+    if (!beside) {
+      texture.erase("source");
+      builder.json["extensionsRequired"] = {"EXT_texture_webp"};
+    }
+    const glm::vec4 texel = builder.load().textures.at(0).texels.at(1, 2);
+    EXPECT_LT(texel.r, 0.01f);
+    EXPECT_GT(texel.b, 0.9f) << "lossy";
+  }
+}
+
 TEST(Textures, TransformAndItsTexCoord) {
   const Json info = {{"index", 0},
                      {"texCoord", 0},

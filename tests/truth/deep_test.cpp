@@ -164,6 +164,30 @@ TEST(Deep, SpellingsOfColouredOpacity) {
   }
 }
 
+// A stereo file that tells its views apart by the names of channels, all in one part.
+TEST(Deep, ViewsOfOnePart) {
+  ExrDocument document;
+  document.path = "stereo.exr";
+  document.views = {"left", "right"};
+  ExrPart part;
+  part.deep = true;
+  for (const char* name : {"A", "B", "G", "R", "Z", "right.A", "right.B", "right.G", "right.R", "right.Z"}) {
+    part.channels.emplace_back();
+    part.channels.back().name = name;
+  }
+  document.parts = {part};
+  const auto redOf = [](const DeepChannels& channels) {
+    return channels.names[static_cast<std::size_t>(channels.light[0])];
+  };
+  const DeepChannels first = resolveDeep(document);
+  EXPECT_EQ(redOf(first), "R");
+  EXPECT_EQ(first.note, "stereo.exr: of the views left, right of its deep samples left is taken; --view names another");
+  EXPECT_EQ(redOf(resolveDeep(document, "left")), "R");
+  EXPECT_EQ(redOf(resolveDeep(document, "right")), "right.R");
+  EXPECT_EQ(resolveDeep(document, "right").note, "");
+  EXPECT_THROW(resolveDeep(document, "middle"), MeaningError);
+}
+
 TEST(Deep, WhatIsLackingIsNamed) {
   const std::string folder = freshFolder("deep-lacking");
   DeepRows rows;

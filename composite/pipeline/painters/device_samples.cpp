@@ -28,6 +28,7 @@ class DeviceSamplesPainter : public Painter {
     const GBuffer& gbuffer = *context_.picture.gbuffer;
     Veil veil(gbuffer.data.width(), gbuffer.data.height());
     PassStatistics statistics;
+    if (context_.plan.layersMove()) sampler_.pose(context_.shot.camera);
     sampler_.over(gbuffer, context_.shot.camera);
     StochasticPlanes planes = drawSamples(sampler_, sample, settings_, pass, context_.plan.passes, statistics);
     TransparentPass& sums = *context_.sources.triangles();

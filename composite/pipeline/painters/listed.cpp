@@ -18,8 +18,12 @@ class ListedMixer : public Mixer {
 
 }  // namespace
 
+std::unique_ptr<Mixer> methodMixer(const ChosenMethod& method) {
+  return std::make_unique<ListedMixer>(method);
+}
+
 std::unique_ptr<Painter> listedPainter(const PaintContext& context) {
-  return listsPainter(context, std::make_unique<ListedMixer>(context.plan.as<PaintListed>()->method));
+  return listsPainter(context, methodMixer(context.plan.as<PaintListed>()->method));
 }
 
 }  // namespace pellucid

@@ -36,6 +36,8 @@ class Mixer {
   virtual void mixLean(const LeanLists& lists, const Window& data, Veil& veil);
 };
 
+std::unique_ptr<Mixer> methodMixer(const ChosenMethod& method);  // a method of composite/methods/, pixel by pixel
+
 std::unique_ptr<Painter> listsPainter(const PaintContext& context, std::unique_ptr<Mixer> mixer);
 
 }  // namespace pellucid

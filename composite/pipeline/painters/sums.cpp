@@ -41,7 +41,13 @@ class SumsMixer : public Mixer {
     kept->places = emptySums(context.plan, context.plan.pass, context.picture.deepOpaque->display, places);
   }
   // What diffuses is listed: each sample of the picture is behind some of it.
-  bool fogBeside(const Fog& fog) const override { return !fog.diffuses(); }
+  bool fogBeside(const Fog& fog) const override { return !fog.diffuses() && !context_.plan.counts; }
+  void mixTexels(const Mixed& mixed, const FragmentLists& lists, Veil& veil) override {
+    if (context_.plan.counts)
+      methodMixer(*context_.plan.counts)->mixTexels(mixed, lists, veil);
+    else
+      Mixer::mixTexels(mixed, lists, veil);
+  }
   void endPass(const OitPlanes& scatter) override {
     if (kept_) kept_->scatter = scatter;
   }
@@ -77,7 +83,7 @@ PlacedSums placedSumsOf(const PaintContext& context, const PassSettings& sample,
     if (planes == &sums.scatter && !planes->scatters()) continue;
     planes->camera = context.shot.camera;
     planes->info.weight = sample.weight;
-    planes->info.places = placesText(*context.picture.deepOpaque);
+    planes->info.places = placesText(*context.shot.deepOpaque);  // as they are at pixel centres
     planes->info.solidHash = gl::solidHash(planes->solid);
   }
   return sums;

@@ -63,7 +63,7 @@ void SystemCanvas::addSolids(const OitPlanes& planes, Veil& veil) const {
         continue;
       }
       for (std::uint64_t k = deep_->offsets[pixel]; k <= deep_->offsets[pixel + 1]; ++k)
-        if (k == deep_->offsets[pixel + 1] || solid.a <= deep_->samples[k].z)
+        if (k == deep_->offsets[pixel + 1] || solid.a <= deep_->samples[k].z * (1.0f + deep_->depthPrecision))
           putSolid(solid, lookedUp, veil, k + pixel);
     }
 }

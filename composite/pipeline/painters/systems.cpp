@@ -74,9 +74,7 @@ class SystemsPainter : public Painter {
       : context_(context),
         method_(context.plan.as<PaintSystems>()->method.value_or(*chooseMethod("weighted"))),
         wholePlan_(context.plan) {
-    systems_ = context.journal.time("split systems", [&] {
-      return splitSystems(context.plan.as<PaintSystems>()->rule, context.shot, context.device, context.journal);
-    });
+    split(context.journal);
     checkSystemNames(*context.plan.as<PaintSystems>(), systems_);
     wholePlan_.paint = PaintSums{};
     wholePlan_.route =
@@ -88,7 +86,17 @@ class SystemsPainter : public Painter {
   }
 
  private:
+  void split(Journal& told) {
+    systems_ = context_.journal.time("split systems", [&] {
+      return splitSystems(context_.plan.as<PaintSystems>()->rule, context_.shot, context_.device, told);
+    });
+  }
+
   Veil painted(const PassSettings& sample, int pass) {
+    if (context_.plan.layersMove()) {  // systems are copies of the scene as it stood, in the order that they had
+      Journal unsaid;
+      split(unsaid);
+    }
     const GBuffer& gbuffer = *context_.picture.gbuffer;
     RunCounts counts;
     const PaintContext whole{wholePlan_,       context_.shot, context_.picture, context_.sources, context_.device,
