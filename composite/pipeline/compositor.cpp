@@ -347,10 +347,10 @@ Result Compositor::painted(const Request& request, double holdTo) {
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
   result.dataWindow = gbuffer.data;
   result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
-  noteWhatIsNotFinite(result.picture, gbuffer, journal_);
+  noteWhatIsNotFinite(result.picture, result.veil, gbuffer, journal_);
   const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
   for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
-  if (!anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);
+  if (!anyTouched(result.veil.touched) && !anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);
   if (request.measure || holdTo > 0.0) {
     Journal truth = journal_.beside();
     RunCounts unused;
