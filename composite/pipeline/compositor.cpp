@@ -127,7 +127,7 @@ void Compositor::takeOver(const Request& request) {
 Compositor::~Compositor() {
   const Device::Turn turn(device_);
   lighting_.reset();
-  if (kept_.use_count() == 1 || !finished_ || shot_->lender) {
+  if (kept_.use_count() == 1 || !finished_ || shot_->inMemory) {
     triangles_.reset();
   } else {
     kept_->forget();
@@ -480,7 +480,7 @@ std::vector<std::string> Compositor::write(const std::string& path, const Result
                                            const std::map<std::string, std::string>& beside) const {
   std::map<std::string, std::string> header = attributes(result);
   header.insert(beside.begin(), beside.end());
-  if (shot_->lender)
+  if (shot_->inMemory)
     return writeFromMemory(path, shot_->opaque, shot_->hasCamera ? &shot_->camera : nullptr, result.picture.rgba,
                            result.layers, header);
   return writeOver(path, shot_->opaque, shot_->hasScene ? &shot_->camera : nullptr, result.picture, result.layers,

@@ -55,7 +55,7 @@ void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
     picture_.centres = lit->centres;
     picture_.deepOpaque = lit->deepOpaque;
     if (planes_)
-      moved_.beauty = lit->gbuffer->beauty;
+      moved_.beauty = lit->gbuffer->beauty.shown(nullptr);
     else
       picture_.gbuffer = lit->gbuffer;
   }
