@@ -46,6 +46,15 @@ TEST(Understood, MedianIsExact) {
     }
 }
 
+// A sample that is drawn in steps would meet the same column again and again.
+TEST(Understood, MedianOfAPattern) {
+  std::vector<float> depths(1 << 18);
+  for (std::size_t i = 0; i < depths.size(); ++i)
+    depths[i] = i % 16 == 0 ? 1.0f : 2.0f + static_cast<float>(i % 16) * 1e-3f + static_cast<float>(i) * 1e-9f;
+  const std::string expected = fmt::format("median {:.6g} m", middleOf(depths));
+  EXPECT_NE(depthLine(depths).find(expected), std::string::npos) << depthLine(depths) << ", expected " << expected;
+}
+
 TEST(Understood, NothingWasHit) {
   const std::string line = depthLine(std::vector<float>(7, std::numeric_limits<float>::infinity()));
   EXPECT_EQ(line.find("median"), std::string::npos) << line;
