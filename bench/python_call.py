@@ -10,8 +10,8 @@ work here: "read picture" takes the arrays over, where the program reads a file.
   overhead = time of the call - its stages + "read picture"
 
 which is: keywords become words, words become flags, the arrays are taken over and their depths checked, notes and plan
-are made, the result is handed out, and whatever else nobody times. The least of many repeats is what it takes where
-nothing else runs; the median says how busy the machine was.
+are made, the result is handed out and let go of, the GL context of `composite` is ended, and whatever else nobody
+times. The least of many repeats is what it takes where nothing else runs; the median says how busy the machine was.
 """
 import statistics, sys, time
 
