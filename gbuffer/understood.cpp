@@ -1,8 +1,16 @@
 // What reading a picture came to, told to a user in a line each.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <vector>
 
 #include "gbuffer/depth_kind.h"
 #include "gbuffer/opaque_io.h"
@@ -10,15 +18,59 @@
 namespace pellucid {
 namespace {
 
-// Metres, over the pixels that hit something.
+// How often each number below kDigits occurs.
+using Counts = std::vector<std::uint32_t>;
+constexpr std::size_t kDigits = 65536;
+
+// Depths are above 0, so their bits as integers have their order.
+std::uint32_t bitsOf(float depth) {
+  return std::bit_cast<std::uint32_t>(depth);
+}
+
+//   count  raises some of two tables of counts for two depths; with one table, depths that are alike would wait for
+//          each other
+template <class Count>
+Counts countsOf(const Image<float>& viewZ, const Count& count) {
+  tbb::enumerable_thread_specific<std::array<Counts, 2>> parts([] {
+    return std::array<Counts, 2>{Counts(kDigits, 0), Counts(kDigits, 0)};
+  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, viewZ.size(), kDigits),
+                    [&](const tbb::blocked_range<std::size_t>& pixels) {
+                      std::array<Counts, 2>& counts = parts.local();
+                      const float* z = viewZ.data();
+                      std::size_t i = pixels.begin();
+                      for (; i + 1 < pixels.end(); i += 2) {
+                        count(bitsOf(z[i]), counts[0].data());
+                        count(bitsOf(z[i + 1]), counts[1].data());
+                      }
+                      if (i < pixels.end()) count(bitsOf(z[i]), counts[0].data());
+                    });
+  Counts sum(kDigits, 0);
+  for (const std::array<Counts, 2>& part : parts)
+    for (const Counts& counts : part)
+      for (std::size_t digit = 0; digit < kDigits; ++digit) sum[digit] += counts[digit];
+  return sum;
+}
+
+// The digit at which `rank` is spent; what is left of it is the rank among those of that digit.
+std::uint32_t digitAt(const Counts& counts, std::size_t& rank) {
+  std::uint32_t digit = 0;
+  while (rank >= counts[digit]) rank -= counts[digit++];
+  return digit;
+}
+
+// Metres, over the pixels that hit something: exactly the middle one, found by its upper and then its lower half.
 double medianDepth(const GBuffer& gbuffer) {
-  std::vector<float> hit;
-  for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i)
-    if (std::isfinite(gbuffer.viewZ[i])) hit.push_back(gbuffer.viewZ[i]);
-  if (hit.empty()) return 0.0;
-  const auto middle = hit.begin() + static_cast<std::ptrdiff_t>(hit.size() / 2);
-  std::nth_element(hit.begin(), middle, hit.end());
-  return static_cast<double>(*middle);
+  const Counts upper = countsOf(gbuffer.viewZ, [](std::uint32_t bits, std::uint32_t* counts) { ++counts[bits >> 16]; });
+  const auto finite = upper.begin() + (bitsOf(std::numeric_limits<float>::infinity()) >> 16);
+  const std::size_t hit = std::accumulate(upper.begin(), finite, std::size_t{0});
+  if (hit == 0) return 0.0;
+  std::size_t rank = hit / 2;
+  const std::uint32_t high = digitAt(upper, rank);
+  const Counts lower = countsOf(gbuffer.viewZ, [high](std::uint32_t bits, std::uint32_t* counts) {
+    if (bits >> 16 == high) ++counts[bits & 0xffffu];
+  });
+  return static_cast<double>(std::bit_cast<float>(high << 16 | digitAt(lower, rank)));
 }
 
 std::string depthLine(const OpaqueFile& file) {

@@ -128,7 +128,7 @@ void Compositor::takeOver(const Request& request) {
 Compositor::~Compositor() {
   const Device::Turn turn(device_);
   lighting_.reset();
-  if (kept_.use_count() == 1 || !finished_ || shot_->lender) {
+  if (kept_.use_count() == 1 || !finished_ || shot_->inMemory) {
     triangles_.reset();
   } else {
     kept_->forget();
@@ -352,11 +352,11 @@ Result Compositor::painted(const Request& request, double holdTo) {
   const int samples = run.plan.supersampled;
   result.dataWindow = pixelsOf(gbuffer.data, samples);
   result.picture = journal_.time("compose", [&] { return compose(result.veil, gbuffer); });
-  noteWhatIsNotFinite(result.picture, gbuffer, journal_);
+  noteWhatIsNotFinite(result.picture, result.veil, gbuffer, journal_);
   const Image<std::uint8_t>& shadowed = run.lighting->shadows.touched;
   for (std::size_t i = 0; i < shadowed.size(); ++i) result.picture.touched[i] |= shadowed[i];
+  if (!anyTouched(result.veil.touched) && !anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);
   if (samples > 1) result.picture = {meansOf(result.picture.rgba, samples), anyOf(result.picture.touched, samples)};
-  if (!anyTouched(result.picture.touched)) noteThatNothingShows(*shot_, journal_);
   if (request.measure || holdTo > 0.0) {
     Journal truth = journal_.beside();
     RunCounts unused;
@@ -490,7 +490,7 @@ std::vector<std::string> Compositor::write(const std::string& path, const Result
   std::map<std::string, std::string> header = attributes(result);
   header.insert(beside.begin(), beside.end());
   const int n = result.plan.supersampled;
-  if (shot_->lender)
+  if (shot_->inMemory)
     return writeFromMemory(path, shot_->opaque, shot_->hasCamera ? &shot_->camera : nullptr, result.picture.rgba,
                            result.layers, header, n);
   if (n > 1) return writePixels(path, shot_->opaque, n, result.picture.rgba, result.layers, header);

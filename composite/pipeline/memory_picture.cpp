@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -45,11 +49,18 @@ void expectSize(const char* plane, const Image<T>& image, const Image<glm::vec4>
                                  plane, image.width(), image.height(), beauty.width(), beauty.height()));
 }
 
-Image<float> openPart(const Image<float>& occlusion) {
-  Image<float> open(occlusion.width(), occlusion.height());
-  for (std::size_t i = 0; i < open.size(); ++i)
-    open[i] = std::isfinite(occlusion[i]) ? std::clamp(occlusion[i], 0.0f, 1.0f) : 1.0f;
-  return open;
+float openPart(float occlusion) {
+  return std::isfinite(occlusion) ? std::clamp(occlusion, 0.0f, 1.0f) : 1.0f;
+}
+
+template <class T, class Conversion>
+Image<T> converted(const Image<T>& image, const Conversion& conversion) {
+  Image<T> made(image.width(), image.height());
+  tbb::parallel_for(tbb::blocked_range<int>(0, image.height()), [&](const tbb::blocked_range<int>& rows) {
+    for (int y = rows.begin(); y != rows.end(); ++y)
+      std::transform(image.row(y), image.row(y) + image.width(), made.row(y), conversion);
+  });
+  return made;
 }
 
 // What all rows come to, by threads that share nothing; `Sum` puts parts together in any order.
@@ -67,32 +78,66 @@ Sum overRows(int height, const Row& row) {
       });
 }
 
+// Numbers that are looked at side by side: compilers make vectors of loops over them.
+constexpr int kLanes = 16;
+
+// Calls lanes.look(number, lane) for all of a row.
+template <class Lanes>
+void overLanes(const float* row, std::size_t size, Lanes& lanes) {
+  std::size_t i = 0;
+  for (; i + kLanes <= size; i += kLanes)
+    for (int lane = 0; lane < kLanes; ++lane) lanes.look(row[i + static_cast<std::size_t>(lane)], lane);
+  for (; i < size; ++i) lanes.look(row[i], 0);
+}
+
+// Positive floats are in the order of their bits as integers, and negative ones are negative: comparing those costs
+// less.
+std::int32_t bitsOf(float value) {
+  return std::bit_cast<std::int32_t>(value);
+}
+constexpr std::int32_t kNothingBits = std::bit_cast<std::int32_t>(kNothing);
+
+bool isDepth(std::int32_t bits) {
+  constexpr auto kLeast = std::bit_cast<std::int32_t>(std::numeric_limits<float>::min());
+  constexpr auto kFarthest = std::bit_cast<std::int32_t>(kFarthestInMemory);
+  return (bits >= kLeast) & (bits < kFarthest);
+}
+
 struct DepthScan {
-  std::size_t firstOdd = std::numeric_limits<std::size_t>::max();  // pixel whose depth is none
-  std::size_t far = 0;                                             // pixels where nothing was hit
-  float least = kNothing, most = 0.0f;                             // of the others
+  std::size_t odd = 0, far = 0;                 // pixels whose depth is none; where nothing was hit
+  std::int32_t least = kNothingBits, most = 0;  // of the others
   void add(const DepthScan& other) {
-    firstOdd = std::min(firstOdd, other.firstOdd);
+    odd += other.odd;
     far += other.far;
     least = std::min(least, other.least);
     most = std::max(most, other.most);
   }
 };
 
+struct DepthLanes {
+  std::int32_t hits[kLanes] = {}, far[kLanes] = {}, least[kLanes], most[kLanes] = {};
+  DepthLanes() { std::fill(std::begin(least), std::end(least), kNothingBits); }
+  void look(float z, int lane) {
+    const std::int32_t bits = bitsOf(z), hit = -static_cast<std::int32_t>(isDepth(bits));  // all bits set, or none
+    const std::int32_t low = (bits & hit) | (kNothingBits & ~hit), high = bits & hit;
+    hits[lane] -= hit;
+    far[lane] += static_cast<std::int32_t>(bits == kNothingBits);
+    least[lane] = low < least[lane] ? low : least[lane];
+    most[lane] = high > most[lane] ? high : most[lane];
+  }
+};
+
 DepthScan scanOf(const Image<float>& viewZ) {
+  const auto width = static_cast<std::size_t>(viewZ.width());
   return overRows<DepthScan>(viewZ.height(), [&](int y, DepthScan& scan) {
-    for (int x = 0; x < viewZ.width(); ++x) {
-      const float z = viewZ.at(x, y);
-      if (z == kNothing) {
-        ++scan.far;
-        continue;
-      }
-      if (!(z >= std::numeric_limits<float>::min() && z < kFarthestInMemory))
-        scan.firstOdd = std::min(scan.firstOdd, static_cast<std::size_t>(y) * static_cast<std::size_t>(viewZ.width()) +
-                                                    static_cast<std::size_t>(x));
-      scan.least = std::min(scan.least, z);
-      scan.most = std::max(scan.most, z);
+    DepthLanes lanes;
+    overLanes(viewZ.row(y), width, lanes);
+    std::size_t good = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      good += static_cast<std::size_t>(lanes.hits[lane] + lanes.far[lane]);
+      scan.add({0, static_cast<std::size_t>(lanes.far[lane]), lanes.least[lane], lanes.most[lane]});
     }
+    scan.odd += width - good;
   });
 }
 
@@ -101,87 +146,74 @@ struct PixelCount {
   void add(const PixelCount& other) { pixels += other.pixels; }
 };
 
+// A row without a number this large has finite colours, and so are sums of four of its numbers.
+constexpr std::uint32_t kLarge = 0x7e000000;  // 2^125
+
+struct LargeLanes {
+  std::uint32_t large[kLanes] = {};
+  void look(float value, int lane) { large[lane] |= (std::bit_cast<std::uint32_t>(value) << 1) >= kLarge << 1; }
+};
+
+bool hasLarge(const float* row, std::size_t size) {
+  LargeLanes lanes;
+  overLanes(row, size, lanes);
+  return std::any_of(std::begin(lanes.large), std::end(lanes.large), [](std::uint32_t any) { return any != 0; });
+}
+
 std::size_t nonFinitePixels(const Image<glm::vec4>& beauty) {
-  return overRows<PixelCount>(beauty.height(),
-                              [&](int y, PixelCount& count) {
-                                for (int x = 0; x < beauty.width(); ++x) {
-                                  const glm::vec4& p = beauty.at(x, y);
-                                  count.pixels += !std::isfinite(p.r + p.g + p.b + p.a);
-                                }
-                              })
+  const auto width = static_cast<std::size_t>(beauty.width());
+  return overRows<PixelCount>(
+             beauty.height(),
+             [&](int y, PixelCount& count) {
+               const glm::vec4* row = beauty.row(y);
+               if (!hasLarge(&row->r, 4 * width)) return;
+               count.pixels += static_cast<std::size_t>(std::count_if(
+                   row, row + width, [](const glm::vec4& p) { return !std::isfinite(p.r + p.g + p.b + p.a); }));
+             })
       .pixels;
 }
 
-// What messages and `inspect` say of the depths.
-void countDepths(const Image<float>& viewZ, OpaqueChoice& choice) {
+// Checks the depths, and counts what messages and `inspect` say of them.
+void readDepths(const Image<float>& viewZ, OpaqueChoice& choice) {
   const DepthScan scan = scanOf(viewZ);
+  if (scan.odd > 0) {
+    const float* first = std::find_if(viewZ.data(), viewZ.data() + viewZ.size(),
+                                      [](float z) { return !isDepth(bitsOf(z)) && z != kNothing; });
+    const auto pixel = static_cast<std::size_t>(first - viewZ.data()), width = static_cast<std::size_t>(viewZ.width());
+    throw UsageError(
+        fmt::format("{}: depth: found {:g} at ({}, {}), expected planar metres above 0 and below {:g}, or +inf where "
+                    "nothing was hit",
+                    kMemoryPicture, *first, pixel % width, pixel / width, kFarthestInMemory));
+  }
   choice.farPixels = scan.far;
-  choice.least = scan.far < viewZ.size() ? static_cast<double>(scan.least) : 0.0;
-  choice.most = static_cast<double>(scan.most);
+  choice.least = scan.far < viewZ.size() ? static_cast<double>(std::bit_cast<float>(scan.least)) : 0.0;
+  choice.most = static_cast<double>(std::bit_cast<float>(scan.most));
 }
 
 }  // namespace
 
-MemoryPicture::MemoryPicture(GBuffer planes)
-    : planes_(std::move(planes)),
-      beauty_(planes_.beauty.data()),
-      viewZ_(planes_.viewZ.data()),
-      width_(planes_.beauty.width()),
-      height_(planes_.beauty.height()) {}
-
-void MemoryPicture::check() const {
-  const std::lock_guard lock(mutex_);
-  const GBuffer& planes = held();
-  if (planes.beauty.empty()) throw UsageError(fmt::format("{}: found no pixels, expected some", kMemoryPicture));
-  expectSize("depth", planes.viewZ, planes.beauty, true);
-  expectSize("normals", planes_.normal, planes.beauty, false);
-  expectSize("occlusion", planes_.occlusion, planes.beauty, false);
-  const std::size_t odd = scanOf(planes.viewZ).firstOdd, width = static_cast<std::size_t>(width_);
-  if (odd < planes.viewZ.size())
-    throw UsageError(
-        fmt::format("{}: depth: found {:g} at ({}, {}), expected planar metres above 0 and below {:g}, or +inf where "
-                    "nothing was hit",
-                    kMemoryPicture, planes.viewZ[odd], odd % width, odd / width, kFarthestInMemory));
-}
-
-void MemoryPicture::lend(GBuffer& to) {
-  const std::lock_guard lock(mutex_);
-  to.display = planes_.display;
-  to.data = planes_.data;
-  to.pixelAspect = planes_.pixelAspect;
-  to.hasAlpha = planes_.hasAlpha;
-  to.camera = planes_.camera;
-  to.normal = planes_.normal;
-  for (std::size_t i = 0; i < to.normal.size(); ++i) to.normal[i] = unitNormal(to.normal[i]);
-  if (!planes_.occlusion.empty()) to.occlusion = openPart(planes_.occlusion);
-  if (holder_) {
-    to.beauty = holder_->beauty;
-    to.viewZ = holder_->viewZ;
-    return;
-  }
-  to.beauty = std::move(planes_.beauty);
-  to.viewZ = std::move(planes_.viewZ);
-  holder_ = &to;
-}
-
-void MemoryPicture::takeBack(GBuffer& from) {
-  const std::lock_guard lock(mutex_);
-  if (holder_ != &from) return;
-  planes_.beauty = std::move(from.beauty);
-  planes_.viewZ = std::move(from.viewZ);
-  holder_ = nullptr;
-}
-
 void checkMemoryPicture(const ShotRequest& request) {
   if (!request.memory) return;
   refuseFlagsOfFiles(request.read);
-  request.memory->check();
+  const GBuffer& planes = *request.memory;
+  if (planes.beauty.empty()) throw UsageError(fmt::format("{}: found no pixels, expected some", kMemoryPicture));
+  expectSize("depth", planes.viewZ, planes.beauty, true);
+  expectSize("normals", planes.normal, planes.beauty, false);
+  expectSize("occlusion", planes.occlusion, planes.beauty, false);
 }
 
-void readMemoryPicture(MemoryPicture& picture, OpaqueFile& file) {
+void readMemoryPicture(const std::shared_ptr<const GBuffer>& picture, OpaqueFile& file) {
   GBuffer& gbuffer = file.gbuffer;
-  picture.lend(gbuffer);
+  gbuffer.display = picture->display;
+  gbuffer.data = picture->data;
+  gbuffer.pixelAspect = picture->pixelAspect;
+  gbuffer.hasAlpha = picture->hasAlpha;
+  gbuffer.camera = picture->camera;
+  gbuffer.beauty = picture->beauty.shown(picture);
+  gbuffer.viewZ = picture->viewZ.shown(picture);
   gbuffer.depthPrecision = kFloatPrecision;
+  gbuffer.normal = converted(picture->normal, unitNormal);
+  gbuffer.occlusion = converted(picture->occlusion, openPart);
   ExrPart part;
   part.display = gbuffer.display;
   part.data = gbuffer.data;
@@ -194,7 +226,7 @@ void readMemoryPicture(MemoryPicture& picture, OpaqueFile& file) {
   file.choice.depthChannel = "depth";
   file.choice.depthKind = "planar";
   file.choice.farValue = static_cast<double>(kFarthestInMemory);
-  countDepths(gbuffer.viewZ, file.choice);
+  readDepths(gbuffer.viewZ, file.choice);
   file.choice.nonFiniteColour = nonFinitePixels(gbuffer.beauty);
   if (file.choice.nonFiniteColour > 0)
     file.notes.push_back(fmt::format("colour: {} pixels are not finite", file.choice.nonFiniteColour));

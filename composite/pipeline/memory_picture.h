@@ -1,43 +1,15 @@
-// An opaque picture that the caller holds in memory, composited onto without a copy of its colours and depths.
+// An opaque picture that the caller holds in memory, composited onto without a copy of its colours and depths: shots
+// show the caller's own pixels, any number of shots at once. Planes are as a GBuffer has them, but for normals of any
+// length and occlusion of any value. Where a field is of no use in memory, as the precision of depth, it is not read.
 #pragma once
 #include <map>
-#include <mutex>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "composite/pipeline/request.h"
 
 namespace pellucid {
-
-// The planes of such a picture, which shots borrow. Where they lie never changes, whoever has them.
-class MemoryPicture {
- public:
-  // Beauty and viewZ of one size; normals and occlusion of that size, or empty.
-  explicit MemoryPicture(GBuffer planes);
-  // The beauty and depth to render into while nobody composites onto them, float32, row by row.
-  glm::vec4* beauty() { return beauty_; }
-  float* viewZ() { return viewZ_; }
-  int width() const { return width_; }
-  int height() const { return height_; }
-
-  // Throws UsageError for planes of different sizes, and for a depth that is neither positive metres nor +inf.
-  void check() const;
-  // The planes as records have them: normals of unit length, occlusion in [0,1]. The first who borrows has beauty and
-  // depth where they lie, others at the same time have a copy of them.
-  //   to  where they will stand until they are given back
-  void lend(GBuffer& to);
-  // Those of a shot that ends. Nothing for planes that were copied.
-  void takeBack(GBuffer& from);
-
- private:
-  const GBuffer& held() const { return holder_ ? *holder_ : planes_; }
-  mutable std::mutex mutex_;
-  GBuffer planes_;  // beauty and viewZ are empty while they are lent
-  GBuffer* holder_ = nullptr;
-  glm::vec4* beauty_;
-  float* viewZ_;
-  int width_, height_;
-};
 
 // The name by which messages call it.
 inline constexpr const char* kMemoryPicture = "picture in memory";
@@ -46,12 +18,14 @@ inline constexpr const char* kMemoryPicture = "picture in memory";
 // nothing.
 constexpr float kFarthestInMemory = 1e9f;
 
-// Where the request has such a picture: throws what check() throws, and UsageError for flags that say how a file is
-// read. Nothing otherwise.
+// Where the request has such a picture: throws UsageError for planes of different sizes, and for flags that say how a
+// file is read. Nothing otherwise.
 void checkMemoryPicture(const ShotRequest& request);
 
-// Fills what readers fill. The picture has passed the check; beauty and depth are borrowed.
-void readMemoryPicture(MemoryPicture& picture, OpaqueFile& file);
+// Fills what readers fill. Beauty and depth are the caller's own pixels, and keep the picture alive; normals are
+// copied, and brought to unit length; occlusion to [0,1]. The picture has passed the check. Throws UsageError for a
+// depth that is neither positive metres nor +inf.
+void readMemoryPicture(const std::shared_ptr<const GBuffer>& picture, OpaqueFile& file);
 
 // A file of such a picture with another beauty: R, G, B, A where it has one, Z, normals, occlusion, and the layers.
 // Returns the notes. Throws ResourceError.

@@ -7,6 +7,7 @@
 namespace pellucid {
 
 // Notes how many pixels of the picture are not finite though the background is, and where the first one lies.
-void noteWhatIsNotFinite(const Picture& picture, const GBuffer& background, Journal& journal);
+//   veil  that the picture is made of: elsewhere it is the background
+void noteWhatIsNotFinite(const Picture& picture, const Veil& veil, const GBuffer& background, Journal& journal);
 
 }  // namespace pellucid

@@ -63,7 +63,7 @@ void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
     else
       picture_.deepOpaque = lit->deepOpaque;
     if (planes_)
-      moved_.beauty = lit->gbuffer->beauty;
+      moved_.beauty = lit->gbuffer->beauty.shown(nullptr);
     else
       picture_.gbuffer = lit->gbuffer;
   }

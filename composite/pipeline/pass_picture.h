@@ -27,7 +27,7 @@ class PassPicture {
   PassPicture(const PassPicture&) = delete;
   PassPicture& operator=(const PassPicture&) = delete;
 
-  //   lit  the picture as the pass's light has it; null: as the first one
+  //   lit  the picture as the pass's light has it, which stays until the next moveTo(); null: as the first one
   void moveTo(glm::dvec2 sample, int pass, const LitPicture* lit = nullptr);
   // From now on, counts the passes in which a pixel's depth is none that the picture shows.
   void countUnseen() { unseen_ = Image<int>(centres_.gbuffer->data.width(), centres_.gbuffer->data.height(), 0); }

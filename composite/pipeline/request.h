@@ -93,12 +93,11 @@ struct ColourRequest {
   bool operator==(const ColourRequest&) const = default;
 };
 
-class MemoryPicture;  // memory_picture.h
-
 struct ShotRequest {
   std::string opaque;  // EXR, flat or deep
-  // The opaque picture as the caller holds it, instead of that file; null: the file.
-  std::shared_ptr<MemoryPicture> memory;
+  // The opaque picture as the caller holds it (memory_picture.h), instead of that file; null: the file. Nothing of it
+  // changes while a shot of it is loaded.
+  std::shared_ptr<const GBuffer> memory;
   std::vector<std::string> inputs;  // glTF, GLB and deep EXR with the transparent things
   ReadOptions read;
   SceneOptions scene;

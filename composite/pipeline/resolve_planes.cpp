@@ -316,7 +316,7 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   if (edges) edges->finish(result.veil);
   moving.finish(result.veil);
   result.picture = journal.time("compose", [&] { return compose(result.veil, gbuffer); });
-  noteWhatIsNotFinite(result.picture, gbuffer, journal);
+  noteWhatIsNotFinite(result.picture, result.veil, gbuffer, journal);
   for (std::size_t i = 0; i < relit.size(); ++i)
     if (relit[i].a > 0.0f) result.picture.touched[i] = 1;
   result.layers = veilLayers(request.layers, result.veil);

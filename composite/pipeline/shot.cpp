@@ -136,9 +136,7 @@ bool isChosen(const CameraChoice& camera) {
   return !std::holds_alternative<std::monostate>(camera);
 }
 
-void readMemory(const ShotRequest& request, Shot& shot) {
-  shot.lender = request.memory;
-  readMemoryPicture(*shot.lender, shot.opaque);
+void takeCameraInMemory(const ShotRequest& request, Shot& shot) {
   shot.hasCamera = shot.hasScene || shot.opaque.gbuffer.camera || isChosen(request.camera);
   if (shot.hasCamera) shot.camera = chooseCamera(request.camera, shot.opaque.gbuffer, shot.scene, kMemoryPicture);
 }
@@ -238,10 +236,6 @@ void chooseSurroundings(const ShotRequest& request, bool keeps, Shot& shot, Jour
 
 }  // namespace
 
-Shot::~Shot() {
-  if (lender) lender->takeBack(opaque.gbuffer);
-}
-
 OpaqueFile readPictureFile(const std::string& path, const ReadOptions& options, const Camera* camera,
                            std::unique_ptr<DeepOpaque>& deep) {
   return interpretPicture(readWithSides(path, options), options, camera, deep);
@@ -295,7 +289,7 @@ namespace {
 
 // What of an earlier frame's shot may serve again; a shot that has read nothing where none may.
 std::unique_ptr<Shot> shotToFill(const ShotRequest& request, std::unique_ptr<Shot> earlier) {
-  if (!earlier || request.memory || earlier->lender) return std::make_unique<Shot>();
+  if (!earlier || request.memory || earlier->inMemory) return std::make_unique<Shot>();
   earlier->keptPicture = earlier->keptScene = false;
   earlier->deep.clear();
   earlier->geometry.clear();
@@ -359,7 +353,10 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   ShotOrigin origin = originOf(request, shot->geometry, options);
   const bool keepsPicture = !shot->opaque.document.parts.empty() && origin.samePicture(shot->origin);
   ExrDocument document;
-  if (!request.memory && !keepsPicture) {
+  if (request.memory) {
+    shot->inMemory = true;
+    journal.time("read picture", [&] { readMemoryPicture(request.memory, shot->opaque); });
+  } else if (!keepsPicture) {
     shot->opaque = OpaqueFile();  // before the next one takes as much memory
     document = journal.time("read picture", [&] { return readWithSides(request.opaque, request.read); });
   }
@@ -374,7 +371,7 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   origin.posed = posed;
   journal.note(shot->scene.notes);
   journal.time("read picture", [&] {
-    request.memory ? readMemory(request, *shot)
+    request.memory ? takeCameraInMemory(request, *shot)
     : keepsPicture ? keepPicture(request, *shot)
                    : readPicture(request, std::move(document), *shot);
     // A camera of the glTF's own may be animated.

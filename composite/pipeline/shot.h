@@ -21,12 +21,7 @@ struct Shot {
   bool keptPicture = false;  // as the frame before left it: files, settings and camera are the same
   bool keptScene = false;    // but for its pose
 
-  Shot() = default;
-  ~Shot();  // gives back what it borrowed
-  Shot(const Shot&) = delete;
-  Shot& operator=(const Shot&) = delete;
-
-  std::shared_ptr<MemoryPicture> lender;  // of the picture's colours and depths; null for those of a file
+  bool inMemory = false;  // the picture's colours and depths are the caller's own
   OpaqueFile opaque;
   HeaderTime headerTime;             // what the picture's header says of it
   std::optional<ShotMoment> moment;  // when it was taken; nothing where nobody says

@@ -1,7 +1,9 @@
 #include "engine_bridge/gl/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 #include "engine_bridge/gl/fragment_lists.h"
@@ -32,11 +34,11 @@ void requireMatch(const GBuffer& gbuffer) {
     throw std::logic_error("the G-buffer's depth does not have the size of its data window");
 }
 
-// Metres to the nearest thing of the picture; 1e30 where it shows nothing.
+// Metres to the nearest thing of the picture; 0 where it shows nothing, and layers may be as near as they like.
 double nearestOf(const GBuffer& gbuffer) {
-  float nearest = 1e30f;
+  float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i) nearest = std::min(nearest, gbuffer.viewZ[i]);
-  return static_cast<double>(nearest);
+  return std::isfinite(nearest) ? static_cast<double>(nearest) : 0.0;
 }
 
 // Of fragments that know whether they lie behind the eye's plane. An orthographic view's triangles, cut there before,

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "gbuffer/camera_matrices.h"
 #include "gbuffer/errors.h"
@@ -13,30 +14,37 @@ namespace py = pybind11;
 namespace pellucid::python {
 namespace {
 
-// Keeps anything that C++ counts alive for Python.
-py::capsule capsuleOf(std::shared_ptr<const void> owner) {
-  return py::capsule(new std::shared_ptr<const void>(std::move(owner)),
-                     [](void* kept) { delete static_cast<std::shared_ptr<const void>*>(kept); });
+// The array's capsule holds the image, and so the pixels where they are.
+template <class Number, class T>
+py::array holding(Image<T> image, int channels) {
+  static_assert(sizeof(T) % sizeof(Number) == 0);
+  auto held = std::make_unique<Image<T>>(std::move(image));
+  std::vector<py::ssize_t> shape{held->height(), held->width()};
+  if (channels > 1) shape.push_back(channels);
+  const auto* first = reinterpret_cast<const Number*>(held->data());
+  const py::capsule owner(held.get(), [](void* kept) { delete static_cast<Image<T>*>(kept); });
+  held.release();
+  return py::array_t<Number>(shape, first, owner);
 }
 
-template <class Number, class T>
-py::array view(const Image<T>& image, int channels, std::shared_ptr<const void> owner) {
-  std::vector<py::ssize_t> shape{image.height(), image.width()};
-  if (channels > 1) shape.push_back(channels);
-  static_assert(sizeof(T) % sizeof(Number) == 0);
-  return py::array_t<Number>(shape, reinterpret_cast<const Number*>(image.data()), capsuleOf(std::move(owner)));
+// Keeps the array for C++, which lets go of it on any thread, with Python's lock or without.
+std::shared_ptr<const void> kept(const Floats& array) {
+  return std::shared_ptr<const void>(py::object(array).release().ptr(), [](const void* object) {
+    const py::gil_scoped_acquire locked;
+    py::handle(static_cast<PyObject*>(const_cast<void*>(object))).dec_ref();
+  });
 }
 
 template <class T>
-Image<T> copyOf(const Floats& array, int channels, std::pair<int, int> size, const char* name) {
+Image<T> shownBy(const Floats& array, int channels, std::pair<py::ssize_t, py::ssize_t> size, const char* name) {
+  static_assert(sizeof(T) % sizeof(float) == 0 && alignof(T) == alignof(float));
   const bool fits = array.ndim() == (channels == 1 ? 2 : 3) && array.shape(0) == size.first &&
                     array.shape(1) == size.second && (channels == 1 || array.shape(2) == channels);
   if (!fits)
     throw UsageError(fmt::format("{}: found another shape, expected ({}, {}{})", name, size.first, size.second,
                                  channels == 1 ? "" : fmt::format(", {}", channels)));
-  Image<T> image(size.second, size.first);
-  std::memcpy(image.data(), array.data(), image.size() * sizeof(T));
-  return image;
+  return Image<T>::borrowed(static_cast<int>(size.second), static_cast<int>(size.first),
+                            reinterpret_cast<const T*>(array.data()), kept(array));
 }
 
 glm::dmat4 matrixOf(const py::array_t<double>& array, const char* name) {
@@ -50,54 +58,51 @@ glm::dmat4 matrixOf(const py::array_t<double>& array, const char* name) {
 
 }  // namespace
 
-py::array viewOf(const Image<float>& image, std::shared_ptr<const void> owner) {
-  return view<float>(image, 1, std::move(owner));
+py::array arrayOf(Image<float> image) {
+  return holding<float>(std::move(image), 1);
 }
-py::array viewOf(const Image<std::uint8_t>& image, std::shared_ptr<const void> owner) {
-  return view<std::uint8_t>(image, 1, std::move(owner));
+py::array arrayOf(Image<std::uint8_t> image) {
+  return holding<std::uint8_t>(std::move(image), 1);
 }
-py::array viewOf(const Image<glm::vec3>& image, std::shared_ptr<const void> owner) {
-  return view<float>(image, 3, std::move(owner));
+py::array arrayOf(Image<glm::vec3> image) {
+  return holding<float>(std::move(image), 3);
 }
-py::array viewOf(const Image<glm::vec4>& image, std::shared_ptr<const void> owner) {
-  return view<float>(image, 4, std::move(owner));
+py::array arrayOf(Image<glm::vec4> image) {
+  return holding<float>(std::move(image), 4);
 }
 
-py::dict viewsOf(const std::vector<ExtraLayer>& layers, const std::shared_ptr<const void>& owner) {
-  py::dict views;
-  for (const ExtraLayer& layer : layers) {
-    py::dict channels = views.contains(layer.name.c_str()) ? py::dict(views[layer.name.c_str()]) : py::dict();
-    for (const auto& [name, image] : layer.channels) channels[name.c_str()] = viewOf(image, owner);
-    views[layer.name.c_str()] = channels;
+py::dict arraysOf(std::vector<ExtraLayer> layers) {
+  py::dict arrays;
+  for (ExtraLayer& layer : layers) {
+    py::dict channels = arrays.contains(layer.name.c_str()) ? py::dict(arrays[layer.name.c_str()]) : py::dict();
+    for (auto& [name, image] : layer.channels) channels[name.c_str()] = arrayOf(std::move(image));
+    arrays[layer.name.c_str()] = channels;
   }
-  return views;
+  return arrays;
 }
 
-std::shared_ptr<MemoryPicture> pictureOf(std::pair<int, int> size, bool hasAlpha, const std::optional<Floats>& normals,
-                                         const std::optional<Floats>& occlusion, std::pair<int, int> origin,
-                                         std::pair<int, int> display, double pixelAspect) {
+std::shared_ptr<GBuffer> pictureOf(const Floats& colour, const Floats& depth, bool hasAlpha,
+                                   const std::optional<Floats>& normals, const std::optional<Floats>& occlusion,
+                                   const Framing& framing) {
+  if (colour.ndim() != 3) throw UsageError("colour: found another shape, expected (height, width, 4)");
+  const std::pair<py::ssize_t, py::ssize_t> size{colour.shape(0), colour.shape(1)};
   const auto [height, width] = size;
-  if (height <= 0 || width <= 0 || display.first <= 0 || display.second <= 0 || !(pixelAspect > 0.0))
+  constexpr py::ssize_t kMost = std::numeric_limits<int>::max() / 2;
+  const bool framed = framing.display.first > 0 && framing.display.second > 0 && framing.pixelAspect > 0.0;
+  if (height <= 0 || width <= 0 || height > kMost || width > kMost || !framed)
     throw UsageError(fmt::format("picture: found {}x{} pixels in a window of {}x{}, expected positive sizes", width,
-                                 height, display.first, display.second));
-  GBuffer planes;
-  planes.beauty = Image<glm::vec4>(width, height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
-  planes.viewZ = Image<float>(width, height, std::numeric_limits<float>::infinity());
-  planes.hasAlpha = hasAlpha;
-  if (normals) planes.normal = copyOf<glm::vec3>(*normals, 3, size, "normals");
-  if (occlusion) planes.occlusion = copyOf<float>(*occlusion, 1, size, "occlusion");
-  planes.display = {0, 0, display.first, display.second};
-  planes.data = {origin.first, origin.second, origin.first + width, origin.second + height};
-  planes.pixelAspect = pixelAspect;
-  return std::make_shared<MemoryPicture>(std::move(planes));
-}
-
-py::array colourOf(const std::shared_ptr<MemoryPicture>& picture) {
-  return py::array_t<float>({picture->height(), picture->width(), 4}, &picture->beauty()->x, capsuleOf(picture));
-}
-
-py::array depthOf(const std::shared_ptr<MemoryPicture>& picture) {
-  return py::array_t<float>({picture->height(), picture->width()}, picture->viewZ(), capsuleOf(picture));
+                                 height, framing.display.first, framing.display.second));
+  const auto planes = std::make_shared<GBuffer>();
+  planes->beauty = shownBy<glm::vec4>(colour, 4, size, "colour");
+  planes->viewZ = shownBy<float>(depth, 1, size, "depth");
+  planes->hasAlpha = hasAlpha;
+  if (normals) planes->normal = shownBy<glm::vec3>(*normals, 3, size, "normals");
+  if (occlusion) planes->occlusion = shownBy<float>(*occlusion, 1, size, "occlusion");
+  const auto [x, y] = framing.origin;
+  planes->display = {0, 0, framing.display.first, framing.display.second};
+  planes->data = {x, y, x + static_cast<int>(width), y + static_cast<int>(height)};
+  planes->pixelAspect = framing.pixelAspect;
+  return planes;
 }
 
 Camera cameraOf(const py::array_t<double>& viewFromWorld, const py::array_t<double>& clipFromView) {

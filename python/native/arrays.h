@@ -1,41 +1,45 @@
-// Images as NumPy arrays, which show the image's own memory.
+// Images as NumPy arrays and arrays as images, without a copy: each shows the other's memory, and keeps it alive.
 #pragma once
 #include <pybind11/numpy.h>
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "composite/pipeline/memory_picture.h"
 #include "gbuffer/gbuffer.h"
 #include "gbuffer/opaque_io.h"
 
 namespace pellucid::python {
 
-// Arrays of (height, width) or (height, width, channels) that read and write
-// the image's own memory.
-//   owner  keeps the image alive as long as an array does
-pybind11::array viewOf(const Image<float>& image, std::shared_ptr<const void> owner);
-pybind11::array viewOf(const Image<std::uint8_t>& image, std::shared_ptr<const void> owner);
-pybind11::array viewOf(const Image<glm::vec3>& image, std::shared_ptr<const void> owner);
-pybind11::array viewOf(const Image<glm::vec4>& image, std::shared_ptr<const void> owner);
+// An array of (height, width) or (height, width, channels) that has the image's pixels for its own.
+pybind11::array arrayOf(Image<float> image);
+pybind11::array arrayOf(Image<std::uint8_t> image);
+pybind11::array arrayOf(Image<glm::vec3> image);
+pybind11::array arrayOf(Image<glm::vec4> image);
 // {layer: {channel: array}}
-pybind11::dict viewsOf(const std::vector<ExtraLayer>& layers, const std::shared_ptr<const void>& owner);
+pybind11::dict arraysOf(std::vector<ExtraLayer> layers);
 
+// An array of another type or layout is converted on the way, once.
 using Floats = pybind11::array_t<float, pybind11::array::c_style | pybind11::array::forcecast>;
 
-// A picture in memory, black and with nothing hit. Throws UsageError for shapes that do not fit.
-//   size       height, width
+// How a picture's arrays lie.
+struct Framing {
+  std::pair<int, int> origin;   // x, y of the first pixel in the display window
+  std::pair<int, int> display;  // width, height of that window
+  double pixelAspect = 1.0;
+};
+
+// An opaque picture whose planes are the arrays, which live as long as it does. Throws UsageError for shapes that do
+// not fit.
+//   colour     (height, width, 4)
+//   depth      (height, width)
+//   hasAlpha   the fourth channel is one of the picture; else it is 1
 //   normals    (height, width, 3), world; or none
 //   occlusion  (height, width), [0,1], 1 is open; or none
-//   origin     x, y of the first pixel in the display window
-//   display    width, height of that window
-std::shared_ptr<MemoryPicture> pictureOf(std::pair<int, int> size, bool hasAlpha, const std::optional<Floats>& normals,
-                                         const std::optional<Floats>& occlusion, std::pair<int, int> origin,
-                                         std::pair<int, int> display, double pixelAspect);
-// Its colours, (height, width, 4), and depths, (height, width), to render into.
-pybind11::array colourOf(const std::shared_ptr<MemoryPicture>& picture);
-pybind11::array depthOf(const std::shared_ptr<MemoryPicture>& picture);
+std::shared_ptr<GBuffer> pictureOf(const Floats& colour, const Floats& depth, bool hasAlpha,
+                                   const std::optional<Floats>& normals, const std::optional<Floats>& occlusion,
+                                   const Framing& framing);
 
 // 4x4 matrices of column vectors, as NumPy writes them: p' = M @ p. Throws
 // UsageError.

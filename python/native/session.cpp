@@ -3,15 +3,28 @@
 #include <utility>
 
 #include "composite/cli/results.h"
+#include "composite/cli/verb_outputs.h"
 #include "python/native/same_shot.h"
 
 namespace pellucid::python {
 
-Session::Session(const Words& words, std::shared_ptr<MemoryPicture> picture, std::optional<Camera> camera)
+Session::Session(const Words& words, std::shared_ptr<const GBuffer> picture, std::optional<Camera> camera)
     : picture_(std::move(picture)), camera_(std::move(camera)) {
   const cli::Listener listener(notes_);
-  const Parsed<OneViewFlags> parsed("composite", words, picture_ != nullptr);
-  load(requestOf(parsed.flags));
+  load(requestOf(flagsOf(words)));
+}
+
+const OneViewFlags& Session::flagsOf(const Words& words) {
+  if (parsed_ && words == words_) {
+    cli::checkVerbOutputs(parsed_->verb);
+    return parsed_->flags;
+  }
+  parsed_.reset();
+  saidOfWords_.clear();
+  const cli::Listener listener(saidOfWords_);
+  parsed_ = std::make_unique<const Parsed<OneViewFlags>>("composite", words, picture_ != nullptr);
+  words_ = words;
+  return parsed_->flags;
 }
 
 Request Session::requestOf(const OneViewFlags& flags) const {
@@ -32,31 +45,31 @@ void Session::load(const Request& request) {
   ++loads_;
 }
 
-std::shared_ptr<const Outcome> Session::run(const Words& words) {
+Outcome Session::run(const Words& words) {
   const std::lock_guard lock(mutex_);
   const cli::Listener listener(notes_);
-  const Parsed<OneViewFlags> parsed("composite", words, picture_ != nullptr);
-  const OneViewFlags& flags = parsed.flags;
+  const OneViewFlags& flags = flagsOf(words);
   std::optional<cli::Threads> threads;
   if (flags.run.threads > 0) threads.emplace(flags.run.threads);
   const Request request = requestOf(flags);
   load(request);
-  auto outcome = std::make_shared<Outcome>();
-  outcome->result = compositor_->run(request);
-  outcome->facts = compositor_->facts();
-  outcome->space = compositor_->shot().opaque.space.name;
-  if (!flags.output.empty()) cli::say(compositor_->write(flags.output, outcome->result));
+  Outcome outcome;
+  outcome.result = compositor_->run(request);
+  outcome.facts = compositor_->facts();
+  outcome.space = compositor_->shot().opaque.space.name;
+  if (!flags.output.empty()) cli::say(compositor_->write(flags.output, outcome.result));
   flags.preview.write(request.shot.colour, request.shot.scene.assetRoot, compositor_->shot().opaque.space,
-                      outcome->result.picture.rgba);
-  outcome->notes = std::exchange(notes_, {});
+                      outcome.result.picture.rgba);
+  outcome.notes = saidOfWords_;
+  outcome.notes.insert(outcome.notes.end(), notes_.begin(), notes_.end());
+  notes_.clear();
   return outcome;
 }
 
 std::pair<Plan, ShotFacts> Session::plan(const Words& words) {
   const std::lock_guard lock(mutex_);
   const cli::Listener listener(notes_);
-  const Parsed<OneViewFlags> parsed("composite", words, picture_ != nullptr);
-  const Request request = requestOf(parsed.flags);
+  const Request request = requestOf(flagsOf(words));
   load(request);
   Plan plan = compositor_->plan(request);
   return {std::move(plan), compositor_->facts()};

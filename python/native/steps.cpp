@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "composite/cli/results.h"
 #include "composite/cli/study_files.h"
@@ -16,6 +17,7 @@
 #include "gbuffer/planes_io.h"
 #include "python/native/arrays.h"
 #include "python/native/plain.h"
+#include "python/native/veil_planes.h"
 
 namespace py = pybind11;
 
@@ -29,19 +31,20 @@ std::unique_ptr<cli::Threads> threadsOf(const cli::RunFlags& run) {
   return run.threads > 0 ? std::make_unique<cli::Threads>(run.threads) : nullptr;
 }
 
-py::dict planesOf(const OitPlanes& planes, const std::shared_ptr<const void>& owner) {
-  py::dict views;
-  views["radiance"] = viewOf(planes.radiance, owner);
-  views["weight"] = viewOf(planes.weight, owner);
-  views["opacity"] = viewOf(planes.opacity, owner);
-  views["depth"] = viewOf(planes.depth, owner);
-  views["light"] = viewOf(planes.light, owner);
-  views["front_depth"] = viewOf(planes.frontZ, owner);
-  views["solid"] = viewOf(planes.solid, owner);
-  if (planes.scatters()) views["refraction"] = viewOf(planes.refraction, owner);
-  if (planes.scatters()) views["diffuse_depth"] = viewOf(planes.diffuseZ, owner);
-  if (planes.disperses()) views["dispersion"] = viewOf(planes.dispersion, owner);
-  return views;
+py::dict arraysOf(OitPlanes planes) {
+  const bool scatters = planes.scatters(), disperses = planes.disperses();
+  py::dict arrays;
+  arrays["radiance"] = arrayOf(std::move(planes.radiance));
+  arrays["weight"] = arrayOf(std::move(planes.weight));
+  arrays["opacity"] = arrayOf(std::move(planes.opacity));
+  arrays["depth"] = arrayOf(std::move(planes.depth));
+  arrays["light"] = arrayOf(std::move(planes.light));
+  arrays["front_depth"] = arrayOf(std::move(planes.frontZ));
+  arrays["solid"] = arrayOf(std::move(planes.solid));
+  if (scatters) arrays["refraction"] = arrayOf(std::move(planes.refraction));
+  if (scatters) arrays["diffuse_depth"] = arrayOf(std::move(planes.diffuseZ));
+  if (disperses) arrays["dispersion"] = arrayOf(std::move(planes.dispersion));
+  return arrays;
 }
 
 struct Accumulated {
@@ -123,57 +126,55 @@ void studyInto(Studied& made, const Words& words) {
 }  // namespace
 
 py::dict accumulate(const Words& words) {
-  const auto made = std::make_shared<Accumulated>();
+  Accumulated made;
   {
     const py::gil_scoped_release unlocked;
-    accumulateInto(*made, words);
+    accumulateInto(made, words);
   }
-  py::list passes;
-  for (const PassPlanes& pass : made->passes) passes.append(planesOf(pass.planes, made));
   py::dict found;
+  found["method"] = made.passes.empty() ? "" : made.passes[0].planes.info.method;
+  py::list passes;
+  for (PassPlanes& pass : made.passes) passes.append(arraysOf(std::move(pass.planes)));
   found["passes"] = passes;
-  found["method"] = made->passes.empty() ? "" : made->passes[0].planes.info.method;
-  found["statistics"] = plainOf(cli::statisticsOf(made->stages, made->counts, made->device));
-  found["notes"] = made->notes;
+  found["statistics"] = plainOf(cli::statisticsOf(made.stages, made.counts, made.device));
+  found["notes"] = made.notes;
   return found;
 }
 
 py::dict resolve(const Words& words) {
-  const auto made = std::make_shared<Resolved>();
+  Resolved made;
   {
     const py::gil_scoped_release unlocked;
-    resolveInto(*made, words);
+    resolveInto(made, words);
   }
-  const ResolvedPlanes& result = made->result;
+  ResolvedPlanes& result = made.result;
   const Window& data = result.opaque.gbuffer.data;
   py::dict found;
-  found["picture"] = viewOf(result.picture.rgba, made);
-  found["touched"] = viewOf(result.picture.touched, made);
-  found["light"] = viewOf(result.veil.light, made);
-  found["transmission"] = viewOf(result.veil.transmission, made);
-  found["front_depth"] = viewOf(result.veil.frontZ, made);
-  found["layers"] = viewsOf(result.layers, made);
+  found["picture"] = arrayOf(std::move(result.picture.rgba));
+  found["touched"] = arrayOf(std::move(result.picture.touched));
+  found["veil"] = VeilPlanes(std::move(result.veil), data);
+  found["layers"] = arraysOf(std::move(result.layers));
   found["window"] = py::make_tuple(data.x0, data.y0, data.x1, data.y1);
   found["space"] = result.opaque.space.name;
-  found["statistics"] = plainOf(cli::statisticsOf(made->stages, {}, result.device));
-  found["notes"] = made->notes;
+  found["statistics"] = plainOf(cli::statisticsOf(made.stages, {}, result.device));
+  found["notes"] = made.notes;
   return found;
 }
 
 py::dict flatten(const Words& words) {
-  const auto made = std::make_shared<Flattened>();
+  Flattened made;
   {
     const py::gil_scoped_release unlocked;
-    flattenInto(*made, words);
+    flattenInto(made, words);
   }
-  const FlatPicture& picture = made->picture;
+  FlatPicture& picture = made.picture;
   py::dict found;
-  found["light"] = viewOf(picture.light, made);
-  found["opacity"] = viewOf(picture.opacity, made);
-  found["front_depth"] = viewOf(picture.frontZ, made);
+  found["light"] = arrayOf(std::move(picture.light));
+  found["opacity"] = arrayOf(std::move(picture.opacity));
+  found["front_depth"] = arrayOf(std::move(picture.frontZ));
   found["window"] = py::make_tuple(picture.data.x0, picture.data.y0, picture.data.x1, picture.data.y1);
   found["samples"] = picture.samples;
-  found["notes"] = made->notes;
+  found["notes"] = made.notes;
   return found;
 }
 
@@ -196,18 +197,18 @@ py::dict compare(const Words& words) {
 }
 
 py::dict study(const Words& words) {
-  const auto made = std::make_shared<Studied>();
+  Studied made;
   {
     const py::gil_scoped_release unlocked;
-    studyInto(*made, words);
+    studyInto(made, words);
   }
   py::list pictures;
-  for (const Image<glm::vec3>& picture : made->outcome.pictures) pictures.append(viewOf(picture, made));
+  for (Image<glm::vec3>& picture : made.outcome.pictures) pictures.append(arrayOf(std::move(picture)));
   py::dict found;
-  found["rows"] = plainOf(cli::jsonOf(made->outcome.rows, made->space));
+  found["rows"] = plainOf(cli::jsonOf(made.outcome.rows, made.space));
   found["pictures"] = pictures;
-  found["machine"] = made->outcome.machine;
-  found["notes"] = made->notes;
+  found["machine"] = made.outcome.machine;
+  found["notes"] = made.notes;
   return found;
 }
 

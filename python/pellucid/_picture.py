@@ -22,6 +22,12 @@ class Camera:
         self._native = _pellucid.camera(self.view_from_world, self.clip_from_view)
 
 
+def _floats(array):
+    """The array itself where it is float32, row by row; else a converted copy. Raises TypeError for complex numbers."""
+    array = numpy.asarray(array).astype(numpy.float32, order="C", casting="same_kind", copy=False)
+    return numpy.require(array, requirements="A")
+
+
 class Picture:
     """An opaque picture in memory, in place of a file.
 
@@ -33,10 +39,13 @@ class Picture:
     display: width, height of the display window, which cameras refer to; the array's own size without it.
     pixel_aspect: width over height of a pixel.
 
-    Row 0 is the top of the picture. The arrays are copied once, into `colour` and `depth` of the object; every call
-    reads those where they lie. A renderer that draws into them (`Picture.empty`) copies nothing. They must not change
-    while a call runs or a `Compositor` holds them. Raises UsageError for shapes that do not fit; a call raises it for
-    depths that are none.
+    Row 0 is the top of the picture. Colours of four channels and depths are not copied where they are C-contiguous
+    float32, read-only and memory-mapped arrays included: `colour` and `depth` of the object are those arrays, which
+    live as long as it does, and every call reads them where they lie. Do not write into them while a call runs or a
+    `Compositor` holds the picture. Any other type or layout, and colours of three channels, are converted into arrays
+    of the picture's own, once. Normals and occlusion are copied whenever a shot is loaded.
+
+    Raises UsageError for shapes that do not fit; a call raises it for depths that are none.
     """
 
     def __init__(self, colour, depth, *, normals=None, occlusion=None, origin=(0, 0), display=None, pixel_aspect=1.0):
@@ -47,9 +56,12 @@ class Picture:
         if depth.shape != colour.shape[:2]:
             raise _pellucid.UsageError(
                 f"depth: found the shape {depth.shape}, expected {colour.shape[:2]} as the colours have")
-        self._make(colour.shape[:2], colour.shape[2] == 4, normals, occlusion, origin, display, pixel_aspect)
-        numpy.copyto(self.colour[:, :, :colour.shape[2]], colour, casting="same_kind")
-        numpy.copyto(self.depth, depth, casting="same_kind")
+        alpha = colour.shape[2] == 4
+        if not alpha:
+            opaque = numpy.ones(colour.shape[:2] + (4,), numpy.float32)
+            numpy.copyto(opaque[:, :, :3], colour, casting="same_kind")
+            colour = opaque
+        self._make(_floats(colour), _floats(depth), alpha, normals, occlusion, origin, display, pixel_aspect)
 
     @classmethod
     def empty(cls, height, width, *, alpha=True, normals=None, occlusion=None, origin=(0, 0), display=None,
@@ -58,13 +70,19 @@ class Picture:
 
         alpha: whether the fourth channel is one of the picture; else it is 1.
         """
+        height, width = int(height), int(width)
+        if height < 1 or width < 1:
+            raise _pellucid.UsageError(f"picture: found {width}x{height} pixels, expected positive sizes")
         picture = cls.__new__(cls)
-        picture._make((int(height), int(width)), bool(alpha), normals, occlusion, origin, display, pixel_aspect)
+        colour = numpy.zeros((height, width, 4), numpy.float32)
+        colour[:, :, 3] = 1
+        depth = numpy.full((height, width), numpy.inf, numpy.float32)
+        picture._make(colour, depth, bool(alpha), normals, occlusion, origin, display, pixel_aspect)
         return picture
 
-    def _make(self, size, alpha, normals, occlusion, origin, display, pixel_aspect):
-        height, width = size
-        self._native = _pellucid.Picture((height, width), alpha, normals, occlusion, tuple(origin),
+    def _make(self, colour, depth, alpha, normals, occlusion, origin, display, pixel_aspect):
+        height, width = depth.shape
+        self._native = _pellucid.Picture(colour, depth, alpha, normals, occlusion, tuple(origin),
                                          (width, height) if display is None else tuple(display), float(pixel_aspect))
-        self.colour = self._native.colour  # (height, width, 4) float32
-        self.depth = self._native.depth  # (height, width) float32
+        self.colour = colour  # (height, width, 4) float32
+        self.depth = depth  # (height, width) float32

@@ -1,6 +1,7 @@
-"""What the functions hand back. Arrays show the result's own memory: no copy is made of them."""
+"""What the functions hand back. Each array has the memory that its image was made in: no copy is made of it."""
 
 import dataclasses
+import types
 from typing import Any, Dict, List, Optional, Tuple
 
 import numpy
@@ -8,13 +9,11 @@ import numpy
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class Resolved:
-    """A composited picture. Arrays have the size of the data window; row 0 is its top.
+    """A composited picture. Arrays have the size of the data window; row 0 is its top. They are the caller's to keep
+    and to write into, one without the others.
 
     picture: (height, width, 4) float32, scene-linear in `space`, premultiplied.
     touched: (height, width) uint8, 0 where the picture kept its bits.
-    light: (height, width, 3) float32, radiance of the transparent things; means nothing where `touched` is 0.
-    transmission: (height, width, 3) float32, from 0 to 1, of what stands behind them; means nothing where `touched` is 0.
-    front_depth: (height, width) float32, planar metres of the nearest of them, +inf for none.
     layers: {layer: {channel: (height, width) float32}}, those of ``layers=[...]`` and ``shadow``.
     window: x0, y0, x1, y1 of the data window, half open.
     space: name of the linear space that the colours are in.
@@ -24,14 +23,35 @@ class Resolved:
 
     picture: numpy.ndarray
     touched: numpy.ndarray
-    light: numpy.ndarray
-    transmission: numpy.ndarray
-    front_depth: numpy.ndarray
+    veil: dataclasses.InitVar[Any]
     layers: Dict[str, Dict[str, numpy.ndarray]]
     window: Tuple[int, int, int, int]
     space: str
     statistics: Dict[str, Any]
     notes: List[str]
+
+    def __post_init__(self, veil):
+        object.__setattr__(self, "_veil", veil)
+
+    @property
+    def light(self) -> numpy.ndarray:
+        """(height, width, 3) float32, radiance of the transparent things; means nothing where `touched` is 0."""
+        return self._veil.light
+
+    @property
+    def transmission(self) -> numpy.ndarray:
+        """(height, width, 3) float32, from 0 to 1, of what stands behind them; means nothing where `touched` is 0."""
+        return self._veil.transmission
+
+    @property
+    def front_depth(self) -> numpy.ndarray:
+        """(height, width) float32, planar metres of the nearest of them, +inf for none."""
+        return self._veil.front_depth
+
+    def __getstate__(self):
+        """For pickle, and so for other processes: arrays in the veil's place."""
+        veil = types.SimpleNamespace(light=self.light, transmission=self.transmission, front_depth=self.front_depth)
+        return {**self.__dict__, "_veil": veil}
 
     def __repr__(self):
         height, width = self.touched.shape

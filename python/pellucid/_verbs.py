@@ -26,7 +26,8 @@ class Compositor:
     ...     exact = shot.run()
     ...     sums = shot.run(method="phenomenological", measure=True)
 
-    opaque: EXR file with colour and depth, or a `Picture`.
+    opaque: EXR file with colour and depth, or a `Picture`, whose arrays are read where they lie. They are kept alive
+        until `close`, and the caller must not write into them until then.
     scenes: glTF, GLB or deep EXR file with the transparent things, a `Mesh`, or a list of these.
     options: keywords of every run, as `composite` takes them; ``camera`` may be a `Camera`, too.
 
@@ -75,8 +76,10 @@ class Compositor:
         return self._session.addresses()
 
     def close(self):
-        """Gives the files, the scene and the GL context back. Results stay."""
+        """Gives the files, the scene, the GL context and the picture's arrays back, once runs in other threads have
+        ended. Results stay."""
         self._session.close()
+        self._picture = None
 
     def __enter__(self):
         return self
@@ -88,7 +91,8 @@ class Compositor:
 def composite(opaque, scenes, output=None, **options):
     """Composites transparent things onto an opaque picture: exactly, unless ``method`` says otherwise.
 
-    opaque: EXR file with colour and depth, or a `Picture` of arrays.
+    opaque: EXR file with colour and depth, or a `Picture` of arrays, which are read where they lie: the caller must not
+        write into them until the call returns.
     scenes: glTF, GLB or deep EXR file with the transparent things, a `Mesh`, or a list of these.
     output: EXR file to write, or None.
 

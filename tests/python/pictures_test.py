@@ -1,5 +1,7 @@
 """The module's pictures are the program's, bit for bit, from files and from arrays."""
 
+import pickle
+
 import numpy
 import pytest
 
@@ -51,6 +53,25 @@ def test_one_pane_is_over(shot):
     assert result.touched.all()
     assert abs(result.picture[:, :, :3] - expected).max() < 2e-7  # two roundings of float32 below 1
     assert abs(result.transmission - 0.75).max() < 1e-7 and abs(result.front_depth - 3).max() < 1e-6
+
+
+def test_planes_have_the_size_of_the_picture(shot):
+    """Whatever part of it was painted; what is over a pixel makes the picture of what is behind it."""
+    small = pellucid.Mesh([[0.5, 0, -3], [1.5, 0, -3], [0.5, 0.5, -3]], material={
+        "alphaMode": "BLEND", "extensions": {"KHR_materials_unlit": {}},
+        "pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 0.5]}})
+    result = pellucid.composite(shot.picture, small, camera=shot.camera, aa=1, **SURROUNDED)
+    size = shot.picture.depth.shape
+    assert result.light.shape == result.transmission.shape == size + (3,) and result.front_depth.shape == size
+    assert result.light is result.light, "made once"
+    touched = result.touched > 0
+    assert touched.any() and not touched.all()
+    made = result.light + result.transmission * shot.picture.colour[:, :, :3]
+    assert abs(made - result.picture[:, :, :3])[touched].max() < 2e-7  # two roundings of float32 below 1
+    assert (result.light[~touched] == 0).all() and (result.transmission[~touched] == 1).all()
+    assert numpy.isinf(result.front_depth[~touched]).all() and abs(result.front_depth[touched] - 3).max() < 1e-6
+    again = pickle.loads(pickle.dumps(result))
+    assert numpy.array_equal(again.light, result.light) and numpy.array_equal(again.picture, result.picture)
 
 
 def test_colours_without_alpha(shot):
