@@ -27,8 +27,8 @@ ExtraLayer pixelsOf(const ExtraLayer& samples, int n);
 
 // The pixels of a file of samples: the part of its beauty with all of its channels, as scanlines under ZIP, in their
 // own types and under the part's header. Depths, identities (whole numbers, Cryptomatte) and what is not finite are
-// taken from the middle, all else is the mean; of a deep part only the picture is written. Returns the notes: parts that were left out, halves that were clamped.
-// Throws ResourceError.
+// taken from the middle, all else is the mean; of a deep part only the picture is written. Returns the notes: parts
+// that were left out, halves that were clamped. Throws ResourceError.
 //   picture, layers  of pixels already
 std::vector<std::string> writePixels(const std::string& path, const OpaqueFile& samples, int n,
                                      const Image<glm::vec4>& picture, const std::vector<ExtraLayer>& layers,

@@ -19,10 +19,7 @@ constexpr int kWidth = 150, kHeight = 100;
 using Pixel = std::vector<Fragment>;
 struct Lists {
   explicit Lists(int wide, int high)
-      : width(wide),
-        pixels(static_cast<std::size_t>(wide * high)),
-        solid(pixels.size()),
-        visits(pixels.size()) {}
+      : width(wide), pixels(static_cast<std::size_t>(wide * high)), solid(pixels.size()), visits(pixels.size()) {}
   int width;
   std::vector<Pixel> pixels;
   std::vector<glm::vec4> solid;

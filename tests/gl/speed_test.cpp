@@ -36,8 +36,8 @@ void report(const char* what, const Material& material, bool lights) {
     lists = std::min(lists, pass.statistics().seconds);
     ASSERT_EQ(fragments, std::size_t{kLayers} * kFrameWidth * kFrameHeight);
   }
-  std::printf("%d full-screen layers at %dx%d, %s: planes %.0f ms, lists %.0f ms\n", kLayers, kFrameWidth, kFrameHeight, what,
-              sums * 1e3, lists * 1e3);
+  std::printf("%d full-screen layers at %dx%d, %s: planes %.0f ms, lists %.0f ms\n", kLayers, kFrameWidth, kFrameHeight,
+              what, sums * 1e3, lists * 1e3);
 }
 
 TEST(Speed, UnlitLayers) {

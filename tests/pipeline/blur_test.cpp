@@ -95,8 +95,9 @@ class Blur : public ::testing::Test {
   void writePicture(float z, int rows = kBlurSize) const {
     const Image<float> black(kBlurSize, rows, 0.0f), one(kBlurSize, rows, 1.0f);
     const Window window{0, 0, kBlurSize, kBlurSize}, data{0, (kBlurSize - rows) / 2, kBlurSize, (kBlurSize + rows) / 2};
-    writeLayers(folder + "/black.exr", window, data,
-                {{"", {{"R", black}, {"G", black}, {"B", black}, {"A", one}, {"Z", Image<float>(kBlurSize, rows, z)}}}});
+    writeLayers(
+        folder + "/black.exr", window, data,
+        {{"", {{"R", black}, {"G", black}, {"B", black}, {"A", one}, {"Z", Image<float>(kBlurSize, rows, z)}}}});
   }
   Request request(int passes) const {
     Request request = requestOf(folder + "/black.exr", folder + "/card.gltf");

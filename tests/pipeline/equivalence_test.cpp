@@ -47,8 +47,8 @@ void askFog(Request& request) {
 }
 
 const char* const kEveryMethod[] = {"phenomenological", "weighted", "blended",   "over",       "sum",
-                                "average",          "listing3", "mlab:4",    "front+tail", "wavelet:2",
-                                "moments:4",        "unsorted", "stochastic"};
+                                    "average",          "listing3", "mlab:4",    "front+tail", "wavelet:2",
+                                    "moments:4",        "unsorted", "stochastic"};
 
 TEST_F(Equivalence, ADeepPictureOfOneSampleIsTheFlatOne) {
   for (const bool fog : {false, true})

@@ -65,7 +65,8 @@ class Filters : public ::testing::Test {
   void SetUp() override { folder = freshFolder("pipeline-filters"); }
   std::string path(const char* name) const { return folder + "/" + name; }
 
-  // Left of an edge through the picture's middle stands a white sheet 2 m away; a pixel is 2 / kFilterSize metres there.
+  // Left of an edge through the picture's middle stands a white sheet 2 m away; a pixel is 2 / kFilterSize metres
+  // there.
   void writeSheet(const char* name, const char* mode, double turn = kTurn) const {
     const auto c = static_cast<float>(std::cos(turn)), s = static_cast<float>(std::sin(turn));
     nlohmann::json white = unlit(1, 1, 1, 1);
@@ -74,7 +75,8 @@ class Filters : public ::testing::Test {
   }
   // Black, 10 m away.
   void writeWall(const std::map<std::string, std::string>& attributes = {}, const std::string& layer = "") const {
-    const Image<float> black(kFilterSize, kFilterSize, 0.0f), opaque(kFilterSize, kFilterSize, 1.0f), far(kFilterSize, kFilterSize, 10.0f);
+    const Image<float> black(kFilterSize, kFilterSize, 0.0f), opaque(kFilterSize, kFilterSize, 1.0f),
+        far(kFilterSize, kFilterSize, 10.0f);
     const Window window{0, 0, kFilterSize, kFilterSize};
     const std::string beauty = layer.empty() ? "" : layer + ".Combined";
     std::vector<ExtraLayer> layers{{beauty, {{"R", black}, {"G", black}, {"B", black}, {"A", opaque}}}};

@@ -24,11 +24,11 @@ using namespace test;
 // A wall that a sun lights from behind the camera, where a card moves across its light: nothing of it is in the
 // picture but its shadow.
 constexpr int kWallSize = 64, kRows = 2;
-constexpr float kWallZ = 8.0f;             // metres; the picture is as high there
+constexpr float kWallZ = 8.0f;                     // metres; the picture is as high there
 constexpr double kWallPerMetre = kWallSize / 8.0;  // pixels on the wall
 constexpr double kPixelsPerFrame = 10.0;
-constexpr double kCardEdge = 0.11;     // metres, of the card's edge at the frame
-constexpr int kShadowSamples = 4;  // positions in a pixel that a pass asks at
+constexpr double kCardEdge = 0.11;  // metres, of the card's edge at the frame
+constexpr int kShadowSamples = 4;   // positions in a pixel that a pass asks at
 
 class MovingShadow : public ::testing::Test {
  protected:
@@ -42,7 +42,8 @@ class MovingShadow : public ::testing::Test {
     writeLayers(folder + "/wall.exr", window, data, {{"", beauty}, {"light.sun", lit}});
 
     const auto perSecond = static_cast<float>(kPixelsPerFrame / kWallPerMetre * 24.0);
-    const float width = 6.0f, right = static_cast<float>(kCardEdge) - 0.5f * perSecond;  // the frame is at half a second
+    const float width = 6.0f,
+                right = static_cast<float>(kCardEdge) - 0.5f * perSecond;  // the frame is at half a second
     GlbOptions options;
     options.motions = {{0, {perSecond, 0.0f, 0.0f}}};
     options.extra = {

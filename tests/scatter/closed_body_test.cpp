@@ -218,7 +218,8 @@ TEST(ClosedBody, ThePassBendsAsTheClosedForm) {
           glm::normalize(dvec3((x + 0.5 - 0.5 * kWidth) / focal, -(y + 0.5 - 0.5 * kHeight) / focal, -1.0));
       const auto bent = bend(shading::PLD_BODY_BALL, viewFromBody, direction, 1 / 1.5, 9.0);
       if (!bent || !bent->smooth) continue;
-      const dvec2 right = bent->offset * (focal / kFocalPixels), found = dvec2(sum.x, sum.y) / static_cast<double>(sum.z);
+      const dvec2 right = bent->offset * (focal / kFocalPixels),
+                  found = dvec2(sum.x, sum.y) / static_cast<double>(sum.z);
       worst = std::max(worst, glm::length(found - right) / (1.0 + glm::length(right)));
       ++pixels;
     }

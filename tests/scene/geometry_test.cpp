@@ -37,8 +37,8 @@ TEST(Geometry, UnindexedTriangleGetsAFlatNormalAndDefaults) {
 TEST(Geometry, AllIndexTypesAgree) {
   const auto load = [](const std::function<int(Builder&)>& indices) {
     Builder builder;
-    Json& primitive =
-        builder.mesh({{"POSITION", builder.floats(kSquare, "VEC3", 3)}, {"NORMAL", builder.floats(kTallUp, "VEC3", 3)}});
+    Json& primitive = builder.mesh(
+        {{"POSITION", builder.floats(kSquare, "VEC3", 3)}, {"NORMAL", builder.floats(kTallUp, "VEC3", 3)}});
     primitive["indices"] = indices(builder);
     return builder.load().primitives.at(0);
   };

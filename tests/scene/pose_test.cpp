@@ -13,8 +13,8 @@ const std::vector<float> kThreeUp = {0, 0, 1, 0, 0, 1, 0, 0, 1};
 
 TEST(Morph, WeightsOfTheNodeThenOfTheMesh) {
   Builder builder;
-  Json& primitive =
-      builder.mesh({{"POSITION", builder.floats(kTriangle, "VEC3", 3)}, {"NORMAL", builder.floats(kThreeUp, "VEC3", 3)}});
+  Json& primitive = builder.mesh(
+      {{"POSITION", builder.floats(kTriangle, "VEC3", 3)}, {"NORMAL", builder.floats(kThreeUp, "VEC3", 3)}});
   primitive["targets"] = {{{"POSITION", builder.floats({0, 0, 2, 0, 0, 2, 0, 0, 2}, "VEC3", 3)}},
                           {{"POSITION", builder.floats({4, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3", 3)},
                            {"NORMAL", builder.floats({1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3", 3)}}};

@@ -188,7 +188,7 @@ void writeTiles(const std::string& path, const DeepRows& rows) {
   for (std::size_t c = 0; c < pointers.size(); ++c) {
     header.channels().insert(kLayerNames[c], exr::Channel(exr::FLOAT));
     frame.insert(kLayerNames[c], exr::DeepSlice(exr::FLOAT, reinterpret_cast<char*>(pointers[c].data()), sizeof(char*),
-                                           sizeof(char*) * stride, sizeof(float)));
+                                                sizeof(char*) * stride, sizeof(float)));
   }
   exr::DeepTiledOutputFile file(path.c_str(), header);
   file.setFrameBuffer(frame);

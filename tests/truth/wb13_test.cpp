@@ -55,7 +55,8 @@ TEST(Listings, AllThreeLayoutsHoldTheSamePicture) {
     const FragmentLists lists = listsOfSet(set, 400, false, 500), mono = grey(lists);
     EXPECT_EQ(largest(veilOf("listing3", lists, kWb13Eq9), veilOf("listing4", lists, kWb13Eq9)), 0.0);
     EXPECT_EQ(largest(veilOf("listing4", mono, kWb13Eq9), veilOf("monochrome", mono, kWb13Eq9)), 0.0);
-    EXPECT_GT(largest(veilOf("listing4", lists, kWb13Eq9), veilOf("monochrome", lists, kWb13Eq9)), .05);  // colour is lost
+    EXPECT_GT(largest(veilOf("listing4", lists, kWb13Eq9), veilOf("monochrome", lists, kWb13Eq9)),
+              .05);  // colour is lost
     const double halves = largest(veilOf("listing3", lists, kWb13Eq9), veilOf("weighted", lists, kWb13Eq9));
     std::printf("[ figure ] set %c: listing 3 in half floats against float sums: largest %.4f\n", set, halves);
     EXPECT_LT(halves, .01);  // a few roundings of 2^-11
