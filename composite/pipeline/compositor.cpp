@@ -480,8 +480,7 @@ RunCounts Compositor::listFragments(const Request& request, const ListSink& sink
 
 std::map<std::string, std::string> Compositor::attributes(const Result& result) const {
   std::map<std::string, std::string> attributes = methodAttributes(result.plan);
-  const ColourSpace& space = shot_->opaque.space;
-  if (!space.isRec709()) attributes["pellucid:workingSpace"] = space.name;
+  if (!shot_->opaque.space.isRec709()) attributes["pellucid:workingSpace"] = shot_->opaque.space.name;
   return attributes;
 }
 
