@@ -137,7 +137,7 @@ TEST_F(TwoSteps, PlanesOfPlacesBelongToTheirPicture) {
 // composite adds sum and average in doubles, planes hold floats.
 TEST_F(TwoSteps, OtherMethodsThatAreSumsAreThoseOfComposite) {
   for (const std::string& opaque : {files.flat, files.deepPicture})
-    for (const Way& way : kWays) {
+    for (const Route& way : kRoutes) {
       if (std::string(way.name) == "published") continue;  // its targets hold the phenomenological sums alone
       for (const char* method : {"sum", "average", "weighted", "blended"}) {
         if (std::string(way.name) == "fitted weight" && std::string(method) != "weighted") continue;
