@@ -155,7 +155,8 @@ void drawCasters(pld_pass* pass, const pld_shadow_view& view, const Scene& scene
       ASSERT_NE(program, 0u);
       glUseProgram(program);
       const glm::mat4 viewFromObject(placed[one.instance].viewFromObject);
-      glUniformMatrix4fv(glGetUniformLocation(program, "viewFromObject"), 1, GL_FALSE, &viewFromObject[0][0]);
+      glUniformMatrix4fv(glGetUniformLocation(program, "viewFromOffset"), 1, GL_FALSE, &viewFromObject[0][0]);
+      glUniform3f(glGetUniformLocation(program, "objectOrigin"), 0.0f, 0.0f, 0.0f);
       glUniformMatrix3fv(glGetUniformLocation(program, "normalFromObject"), 1, GL_FALSE,
                          &placed[one.instance].normalFromObject[0][0]);
       glUniform1f(glGetUniformLocation(program, "thicknessScale"), placed[one.instance].thicknessScale);
