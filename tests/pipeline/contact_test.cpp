@@ -75,23 +75,17 @@ class Contact : public ::testing::Test {
     Compositor compositor(request);
     return compositor.run(request).picture.rgba;
   }
-  static double difference(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      largest = std::max(largest, static_cast<double>(glm::length(glm::vec3(a[i] - b[i]))));
-    return largest;
-  }
   // On the wall as before nothing, to the bit; behind it not at all.
   void expectContact(const Wall& wall, const std::string& method, int passes, bool low = false) {
     SCOPED_TRACE(testing::Message() << wall.tilt << " degrees, " << wall.distance << " m, half " << wall.half << ", "
                                     << method << ", --aa " << passes);
     const Image<glm::vec4> on = picture(true, 1.0, wall, method, passes, low);
-    EXPECT_EQ(difference(on, picture(false, 1.0, wall, method, passes, low)), 0.0);
+    EXPECT_EQ(farthestApart(on, picture(false, 1.0, wall, method, passes, low)), 0.0);
     const Image<glm::vec4> behind = picture(true, 1.0 + 2.0 * wall.precision(), wall, method, passes, low);
     writeGlb(folder + "/decal.glb", {Quad{{0, 0, 9}, {1, 0, 0}, {0, 1, 0}, unlit(1, 1, 1, 0.5f)}});
     Request none = requestOf(folder + "/wall.exr", folder + "/decal.glb");
-    EXPECT_EQ(difference(behind, run(none)), 0.0);
-    EXPECT_GT(difference(on, behind), 0.1) << "there is something to see";
+    EXPECT_EQ(farthestApart(behind, run(none)), 0.0);
+    EXPECT_GT(farthestApart(on, behind), 0.1) << "there is something to see";
   }
   std::string folder;
 };
@@ -136,7 +130,7 @@ TEST_F(Contact, ByEveryRoute) {
       each(request, route);
       shown[k] = run(request);
     }
-    EXPECT_EQ(difference(shown[0], shown[1]), 0.0);
+    EXPECT_EQ(farthestApart(shown[0], shown[1]), 0.0);
     for (std::size_t i = 0; i < shown[2].size(); ++i)
       for (int c = 0; c < 3; ++c) EXPECT_EQ(shown[2][i][c], static_cast<float>(kColour[c]));
   }

@@ -30,14 +30,9 @@ double planeAt(int x, double distance) {
 
 // A sheet before a wall, both tilted: two samples a pixel. Without `there` both lie beyond everything.
 void writeSheetAndWall(const std::string& path, bool there) {
-  DeepHeader header;
-  header.display = header.data = {0, 0, kSize, kSize};
-  header.channels = {"A", "B", "G", "R", "Z"};
+  const DeepHeader header = deepHeaderOf(kSize, kSize);
   DeepWriter writer(path, header);
-  DeepRows rows;
-  rows.window = header.data;
-  rows.channels.resize(5);
-  rows.offsets.assign(1, 0);
+  DeepRows rows = noSamplesOf(header);
   const auto put = [&](float alpha, float light, double z) {
     const float values[] = {alpha, alpha * light, alpha * light, alpha * light, static_cast<float>(z)};
     for (std::size_t c = 0; c < 5; ++c) rows.channels[c].push_back(values[c]);

@@ -32,12 +32,6 @@ class MovingRoutes : public ::testing::Test {
     Compositor compositor(request);
     return compositor.run(request).picture.rgba;
   }
-  static double difference(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      largest = std::max(largest, static_cast<double>(glm::length(glm::vec3(a[i] - b[i]))));
-    return largest;
-  }
   ShotFiles files;
   std::string folder;
 };
@@ -66,12 +60,12 @@ TEST_F(MovingRoutes, ShowOneLayerAtTheSamePlaces) {
         Request still = request();
         still.shot.time = truth.shot.time;
         still.paint = PaintSorted{};
-        EXPECT_GT(difference(sorted, shown(still)), 0.05) << "something moves";
+        EXPECT_GT(farthestApart(sorted, shown(still)), 0.05) << "something moves";
       }
       for (const auto& [name, paint] : routes) {
         Request routed = truth;
         routed.paint = paint;
-        EXPECT_LT(difference(sorted, shown(routed)), 3e-5) << name << ", shutter " << shutter << ", lens " << lens;
+        EXPECT_LT(farthestApart(sorted, shown(routed)), 3e-5) << name << ", shutter " << shutter << ", lens " << lens;
       }
     }
 }

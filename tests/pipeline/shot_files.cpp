@@ -8,6 +8,28 @@
 #include "tests/support/shots.h"
 
 namespace pellucid::test {
+DeepHeader deepHeaderOf(int width, int height) {
+  DeepHeader header;
+  header.display = header.data = {0, 0, width, height};
+  header.channels = {"A", "B", "G", "R", "Z"};
+  return header;
+}
+
+DeepRows noSamplesOf(const DeepHeader& header) {
+  DeepRows rows;
+  rows.window = header.data;
+  rows.channels.resize(header.channels.size());
+  rows.offsets.assign(1, 0);
+  return rows;
+}
+
+double farthestApart(const Image<glm::vec4>& a, const Image<glm::vec4>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, static_cast<double>(glm::length(glm::vec3(a[i] - b[i]))));
+  return largest;
+}
+
 namespace {
 
 using nlohmann::json;
@@ -82,14 +104,9 @@ void writeDeepPicture(const std::string& path, bool withPost) {
 
 // One even card in front of everything.
 void writeDeepLayers(const std::string& path) {
-  DeepHeader header;
-  header.display = header.data = {0, 0, kShotWidth, kShotHeight};
-  header.channels = {"A", "B", "G", "R", "Z"};
+  const DeepHeader header = deepHeaderOf(kShotWidth, kShotHeight);
   DeepWriter writer(path, header);
-  DeepRows rows;
-  rows.window = header.data;
-  rows.channels.resize(5);
-  rows.offsets.assign(1, 0);
+  DeepRows rows = noSamplesOf(header);
   for (int i = 0; i < kShotWidth * kShotHeight; ++i) {
     const float values[] = {0.25f, 0.02f, 0.05f, 0.1f, 3.0f};
     for (std::size_t c = 0; c < 5; ++c) rows.channels[c].push_back(values[c]);

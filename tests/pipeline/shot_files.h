@@ -4,6 +4,7 @@
 #include <string>
 
 #include "composite/pipeline/request.h"
+#include "gbuffer/deep_io.h"
 
 namespace pellucid::test {
 
@@ -25,5 +26,12 @@ void openLens(Request& request);
 
 // What --method takes, without the settings of samples.
 Paint paintOf(const std::string& method);
+
+// Deep files of A, B, G, R and Z: their header, and rows without samples.
+DeepHeader deepHeaderOf(int width, int height);
+DeepRows noSamplesOf(const DeepHeader& header);
+
+// The largest distance of two colours at one place of pictures of one size.
+double farthestApart(const Image<glm::vec4>& a, const Image<glm::vec4>& b);
 
 }  // namespace pellucid::test
