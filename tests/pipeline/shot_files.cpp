@@ -8,6 +8,7 @@
 #include "tests/support/shots.h"
 
 namespace pellucid::test {
+
 DeepHeader deepHeaderOf(int width, int height) {
   DeepHeader header;
   header.display = header.data = {0, 0, width, height};
