@@ -27,7 +27,7 @@ void label(const std::vector<StudyRow>& rows, Plot& plot) {
   std::vector<double> y;
   for (const std::size_t i : order)
     y.push_back(std::max(plot.dots[i].y, y.empty() ? 0.0 : y.back() + PlotLayout::textSize));
-  double lowest = PlotLayout::bottom;
+  double lowest = plot.bottom;
   for (std::size_t k = y.size(); k-- > 0; lowest = y[k] - PlotLayout::textSize) y[k] = std::min(y[k], lowest);
   for (std::size_t k = 0; k < order.size(); ++k) {
     const PlotDot& dot = plot.dots[order[k]];
@@ -56,15 +56,16 @@ Plot studyPlot(const std::vector<StudyRow>& rows) {
   const double y1 = std::ceil(std::log10(worst)),
                y0 = std::min(std::floor(std::log10(least)), y1 - 1) - (exact ? 1 : 0);
   const double lowest = std::pow(10, y0);
+  Plot plot;
+  plot.bottom = std::max(plot.bottom, PlotLayout::textSize * static_cast<double>(rows.size() + 1));
+  plot.height += static_cast<int>(plot.bottom - PlotLayout::leastBottom);
   const auto px = [&](double s) {
     return axis(std::max(s, kLeastSeconds), x0, x1, PlotLayout::left, PlotLayout::right);
   };
-  const auto py = [&](double e) { return axis(std::max(e, lowest), y0, y1, PlotLayout::bottom, PlotLayout::top); };
-  Plot plot;
+  const auto py = [&](double e) { return axis(std::max(e, lowest), y0, y1, plot.bottom, PlotLayout::top); };
   for (double d = x0; d <= x1; ++d) {
-    plot.lines.push_back(
-        {px(std::pow(10, d)), PlotLayout::top, px(std::pow(10, d)), PlotLayout::bottom, PlotLine::grid});
-    plot.texts.push_back({px(std::pow(10, d)), PlotLayout::bottom + 16, fmt::format("1e{:.0f}", d), 0});
+    plot.lines.push_back({px(std::pow(10, d)), PlotLayout::top, px(std::pow(10, d)), plot.bottom, PlotLine::grid});
+    plot.texts.push_back({px(std::pow(10, d)), plot.bottom + 16, fmt::format("1e{:.0f}", d), 0});
   }
   for (double d = y0; d <= y1; ++d) {
     plot.lines.push_back(
@@ -72,8 +73,8 @@ Plot studyPlot(const std::vector<StudyRow>& rows) {
     plot.texts.push_back(
         {PlotLayout::left - 6, py(std::pow(10, d)) + 4, exact && d == y0 ? "0" : fmt::format("1e{:.0f}", d), 1});
   }
-  plot.texts.push_back({0.5 * (PlotLayout::left + PlotLayout::right), PlotLayout::bottom + 36, "seconds", 0});
-  const PlotText upright{16, 0.5 * (PlotLayout::top + PlotLayout::bottom), "RMSE against sorted over", 0, true};
+  plot.texts.push_back({0.5 * (PlotLayout::left + PlotLayout::right), plot.bottom + 36, "seconds", 0});
+  const PlotText upright{16, 0.5 * (PlotLayout::top + plot.bottom), "RMSE against sorted over", 0, true};
   plot.texts.push_back(upright);
   std::vector<const StudyRow*> front;
   for (const StudyRow& row : rows)

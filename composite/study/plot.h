@@ -9,7 +9,7 @@ namespace pellucid {
 
 // Where the plot's parts lie, in pixels of its picture.
 struct PlotLayout {
-  static constexpr double left = 70, right = 660, top = 20, bottom = 400, labels = 710;
+  static constexpr double left = 70, right = 660, top = 20, leastBottom = 400, labels = 710;
   static constexpr double textSize = 12, dot = 4;
 };
 
@@ -29,9 +29,10 @@ struct PlotText {
   bool upright = false;
 };
 
-// What is drawn, in pixels of a picture of this size.
+// What is drawn, in pixels of a picture of this size: as high as its labels need it.
 struct Plot {
   int width = 900, height = 450;
+  double bottom = PlotLayout::leastBottom;  // of the axes
   std::vector<PlotLine> lines;
   std::vector<PlotDot> dots;
   std::vector<PlotText> texts;

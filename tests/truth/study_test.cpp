@@ -8,6 +8,7 @@
 #include "composite/methods/method.h"
 #include "composite/over.h"
 #include "composite/study/fit_weight.h"
+#include "composite/study/plot.h"
 #include "composite/study/study.h"
 #include "gbuffer/accum.h"
 #include "shaders/weights.h"
@@ -69,6 +70,32 @@ TEST(Study, FrontHoldsWhatNothingBeats) {
   }
   markFront(rows);
   EXPECT_TRUE(rows[0].front && !rows[1].front && rows[2].front && rows[3].front);
+}
+
+// Their column is as long as they are many.
+TEST(Study, LabelsOfAnyNumberOfRowsLieInThePlot) {
+  const std::string folder = freshFolder("study-labels");
+  for (const std::size_t count : {1u, 33u, 34u, 120u})
+    for (const double error : {0.0, 0.01}) {
+      SCOPED_TRACE(testing::Message() << count << " rows, error " << error);
+      std::vector<StudyRow> rows(count);
+      for (StudyRow& row : rows) {
+        row.method = "a method with a name that is longer than its column is wide";
+        row.seconds = 0.02;
+        row.error.rmse = error;
+      }
+      const Plot plot = studyPlot(rows);
+      std::vector<double> heights;
+      for (const PlotText& text : plot.texts) {
+        EXPECT_GT(text.y, 0.0);
+        EXPECT_LT(text.y, plot.height);
+        if (text.x == PlotLayout::labels) heights.push_back(text.y);
+      }
+      ASSERT_EQ(heights.size(), count);
+      for (std::size_t i = 1; i < count; ++i) EXPECT_GE(heights[i] - heights[i - 1], PlotLayout::textSize - 1e-9);
+      writePlotPng(folder + "/plot.png", plot);
+      EXPECT_EQ(slurp(folder + "/plot.png").substr(1, 3), "PNG");
+    }
 }
 
 TEST(Study, VerbWritesTablePlotAndPage) {

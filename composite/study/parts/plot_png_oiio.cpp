@@ -41,7 +41,7 @@ bool writePng(const std::string& path, const Plot& plot) {
   for (const PlotText& text : plot.texts) {
     if (text.upright) {
       // Written across, then turned.
-      const int length = at(PlotLayout::bottom - PlotLayout::top), thick = at(1.5 * PlotLayout::textSize);
+      const int length = at(plot.bottom - PlotLayout::top), thick = at(1.5 * PlotLayout::textSize);
       ImageBuf label(ImageSpec(length, thick, 3, TypeDesc::FLOAT));
       ImageBufAlgo::fill(label, {1.0f, 1.0f, 1.0f});
       labelled = ImageBufAlgo::render_text(label, length / 2, at(PlotLayout::textSize), text.text,
