@@ -14,7 +14,7 @@
 namespace pellucid {
 
 // Deeper than any: where a sample at infinity stands, so that arithmetic with it stays finite.
-inline constexpr double kFarthest = std::numeric_limits<float>::max();
+inline constexpr double kFarthest = static_cast<double>(std::numeric_limits<float>::max());
 
 // What was wrong with samples and how they were read, for a note.
 struct DeepOddities {

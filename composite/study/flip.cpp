@@ -116,7 +116,7 @@ std::array<Plane, 3> opponentPlanes(const Image<glm::vec4>& picture) {
   std::array<Plane, 3> planes;
   for (Plane& plane : planes) plane = Plane(picture.width(), picture.height());
   for (std::size_t i = 0; i < picture.size(); ++i) {
-    dvec3 rgb(glm::vec3(picture[i]));
+    dvec3 rgb{glm::vec3(picture[i])};
     for (int c = 0; c < 3; ++c) rgb[c] = std::isfinite(rgb[c]) ? std::clamp(rgb[c], 0.0, 1.0) : 0.0;
     const dvec3 opponents = opponentsOf(rgb);
     for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)][i] = opponents[c];

@@ -130,7 +130,7 @@ Curve readCurve(GltfFile& file, const JsonView& sampler, const CurveShape& shape
   if (curve.kind != CurveKind::rotation || perKey == 3) return curve;
   for (std::size_t k = 0; k < curve.seconds.size(); ++k) {
     const float* q = &curve.values[4 * k];
-    if (!(lengthOf({q[0], q[1], q[2], q[3]}) > kShortest))
+    if (!(lengthOf(std::vector<double>(q, q + 4)) > kShortest))
       output.refuse(fmt::format("have no length at key {}; expected unit quaternions", k));
   }
   return curve;

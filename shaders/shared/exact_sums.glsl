@@ -26,8 +26,8 @@ PLD_FN ExactSums exactSums(vec4 largest, uint count) {
   sums.coarseGrid = dvec4(gridOf(largest.x, count), gridOf(largest.y, count), gridOf(largest.z, count), gridOf(largest.w, count));
   // Of what the coarse grid leaves.
   sums.fineGrid = sums.coarseGrid * powerOfTwo(findMSB(count) + 2 - 53);
-  sums.coarse = dvec4(0.0f);
-  sums.fine = dvec4(0.0f);
+  sums.coarse = dvec4(0);
+  sums.fine = dvec4(0);
   return sums;
 }
 
