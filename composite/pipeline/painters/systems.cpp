@@ -109,7 +109,7 @@ class SystemsPainter : public Painter {
     SystemCanvas canvas(context_.picture);
     Veil veil = canvas.empty();
     if (sample.fog) fog_ = withFog(*sample.fog, gbuffer, sample.sample, marksOf(systems_, planes, gbuffer.data), deep);
-    addFogRun(sample, kNothing, systems_.empty() ? 0.0 : static_cast<double>(systems_[0].z), canvas, veil);
+    addFogRun(sample, static_cast<double>(kNothing), systems_.empty() ? 0.0 : systems_[0].z, canvas, veil);
     for (std::size_t k = 0; k < systems_.size(); ++k) {
       Veil own = canvas.empty();
       mixSystem(systems_[k], bare, pass, planes, canvas, own, counts);
