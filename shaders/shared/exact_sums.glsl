@@ -1,6 +1,7 @@
 #pragma once
-// Sums of floats that no order changes, rounded once. Each term is cut at two grids that the largest term and the number
-// of terms decide, so that every addition of the parts is exact (Demmel and Nguyen, Parallel Reproducible Summation, 2015).
+// Sums of floats that no order changes, rounded once. Each term is cut at two grids that the largest term and the
+// number of terms decide, so that every addition of the parts is exact (Demmel and Nguyen, Parallel Reproducible
+// Summation, 2015).
 // What lies below the second grid is lost: 2^-101 of the largest term, times the square of the number of terms, a term.
 // The one shared text in doubles: rounding is all it is about.
 
@@ -23,7 +24,8 @@ PLD_FN double gridOf(float largest, uint count) {
 //   count    of terms, > 0
 PLD_FN ExactSums exactSums(vec4 largest, uint count) {
   ExactSums sums;
-  sums.coarseGrid = dvec4(gridOf(largest.x, count), gridOf(largest.y, count), gridOf(largest.z, count), gridOf(largest.w, count));
+  sums.coarseGrid =
+      dvec4(gridOf(largest.x, count), gridOf(largest.y, count), gridOf(largest.z, count), gridOf(largest.w, count));
   // Of what the coarse grid leaves.
   sums.fineGrid = sums.coarseGrid * powerOfTwo(findMSB(count) + 2 - 53);
   sums.coarse = dvec4(0);
@@ -46,7 +48,8 @@ PLD_FN ExactSums addedTo(ExactSums sums, vec4 terms) {
   return more;
 }
 
-// coarse + fine to float. To double it is rounded to odd, so that the second rounding knows on which side of a tie it lay.
+// coarse + fine to float. To double it is rounded to odd, so that the second rounding knows on which side of a tie it
+// lay.
 PLD_FN float roundedOnce(double coarse, double fine) {
   double none = double(0.0f);
   precise double sum = coarse + fine;
