@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gbuffer/errors.h"
+#include "gbuffer/lower_case.h"
 #include "gbuffer/producers.h"
 
 namespace pellucid {
@@ -27,12 +28,6 @@ constexpr const char* kDataWords[] = {"n",      "nn",       "normal", "normals",
 template <class Range>
 bool isOneOf(const std::string& word, const Range& words) {
   return std::any_of(std::begin(words), std::end(words), [&](const char* known) { return word == known; });
-}
-
-std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
 }
 
 std::vector<std::string> split(const std::string& name) {
@@ -66,9 +61,9 @@ NamedChannel nameBeside(const ExrPart& part, int index, const ExrChannel& channe
   named.layerName = part.name.empty() ? inside : part.name + "." + inside;
   named.fullName = named.layerName + channel.name.substr(layerOf(channel.name).size());
   while (named.layerName.ends_with(".")) named.layerName.pop_back();
-  named.suffix = lower(split(channel.name).back());
+  named.suffix = lowerCase(split(channel.name).back());
   for (const std::string& word : split(named.layerName))
-    if (!word.empty() && !isOneOf(lower(word), kEmptyWords)) named.layers.push_back(lower(word));
+    if (!word.empty() && !isOneOf(lowerCase(word), kEmptyWords)) named.layers.push_back(lowerCase(word));
   return named;
 }
 
@@ -92,13 +87,13 @@ NamedChannel nameOne(const ExrDocument& document, int index, const ExrChannel& c
     if (words.size() > front.size() && std::equal(front.begin(), front.end(), words.begin())) front.clear();
     words.insert(words.begin(), front.begin(), front.end());
   }
-  named.suffix = lower(words.back());
+  named.suffix = lowerCase(words.back());
   words.pop_back();
   for (const std::string& word : words) {
     if (manyViews && std::find(document.views.begin(), document.views.end(), word) != document.views.end())
       named.view = word;
-    else if (!isOneOf(lower(word), kEmptyWords))
-      named.layers.push_back(lower(word));
+    else if (!isOneOf(lowerCase(word), kEmptyWords))
+      named.layers.push_back(lowerCase(word));
   }
   // In one part, channels without a view belong to the default view.
   if (manyViews && named.view.empty() && !manyParts) named.view = document.views[0];
@@ -323,7 +318,7 @@ const NamedChannel& resolveDepth(const ExrDocument& document, const std::vector<
 }
 
 bool isPassName(const std::string& name) {
-  const std::string last = lower(split(name).back());
+  const std::string last = lowerCase(split(name).back());
   return means(Pass::normal, last) || means(Pass::position, last) || means(Pass::occlusion, last) ||
          (name.starts_with("light.") && name.size() > 6);
 }

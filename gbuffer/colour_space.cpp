@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <iterator>
 #include <sstream>
 
 #include "gbuffer/errors.h"
+#include "gbuffer/lower_case.h"
 
 namespace pellucid {
 namespace {
@@ -62,12 +62,6 @@ bool near(const Chromaticities& a, const Chromaticities& b) {
   return near(a.red, b.red) && near(a.green, b.green) && near(a.blue, b.blue) && near(a.white, b.white);
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::string primariesText(const Chromaticities& space) {
   return fmt::format("({:.4g}, {:.4g}) ({:.4g}, {:.4g}) ({:.4g}, {:.4g}), white ({:.4g}, {:.4g})", space.red.x,
                      space.red.y, space.green.x, space.green.y, space.blue.x, space.blue.y, space.white.x,
@@ -108,11 +102,11 @@ const std::vector<NamedSpace>& namedSpaces() {
 }
 
 const NamedSpace* namedSpace(const std::string& name) {
-  const std::string wanted = lower(name);
+  const std::string wanted = lowerCase(name);
   for (const NamedSpace& row : namedSpaces()) {
-    if (lower(row.name) == wanted) return &row;
+    if (lowerCase(row.name) == wanted) return &row;
     for (const char* alias : row.aliases)
-      if (lower(alias) == wanted) return &row;
+      if (lowerCase(alias) == wanted) return &row;
   }
   return nullptr;
 }

@@ -7,15 +7,10 @@
 
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/lower_case.h"
 
 namespace pellucid {
 namespace {
-
-std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
 
 class Finder {
  public:
@@ -39,7 +34,7 @@ class Finder {
     std::string plain, layered;
     bool two = false;
     for (const NamedChannel& channel : named_) {
-      if (channel.suffix != lower(name)) continue;
+      if (channel.suffix != lowerCase(name)) continue;
       std::string& slot = channel.layers.empty() ? plain : layered;
       two |= !slot.empty() && !channel.layers.empty();
       slot = channel.channel->name;

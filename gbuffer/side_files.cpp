@@ -3,19 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "gbuffer/channels.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/lower_case.h"
 
 namespace pellucid {
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 std::string windowText(const Window& w) {
   return fmt::format("({}, {})-({}, {})", w.x0, w.y0, w.x1 - 1, w.y1 - 1);
@@ -50,7 +44,7 @@ bool same(const NamedChannel& a, const NamedChannel& b) {
 }  // namespace
 
 std::optional<SideFile> sideFileOf(const std::string& depth) {
-  const std::string text = lower(depth);
+  const std::string text = lowerCase(depth);
   if (text.ends_with(".exr")) return SideFile{"", depth, ""};
   const auto colon = text.rfind(".exr:");
   if (colon == std::string::npos || colon + 5 == text.size()) return std::nullopt;
@@ -59,7 +53,7 @@ std::optional<SideFile> sideFileOf(const std::string& depth) {
 
 SideFile readAov(const std::string& text) {
   const auto equals = text.find('=');
-  if (equals == std::string::npos || equals == 0 || !lower(text).ends_with(".exr"))
+  if (equals == std::string::npos || equals == 0 || !lowerCase(text).ends_with(".exr"))
     throw UsageError(fmt::format("--aov: found '{}', expected NAME=FILE.exr, such as N=normals.exr", text));
   const std::string name = text.substr(0, equals);
   if (!isPassName(name))

@@ -4,12 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 
 #include "gbuffer/channel_encoder.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/lower_case.h"
 
 namespace pellucid {
 namespace {
@@ -38,14 +38,9 @@ Image<T> meanImage(const Image<T>& samples, int n) {
   });
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 // A mean of two depths lies on no surface, and a mean of two identities is another's.
 bool hasNoMean(const std::string& channel) {
-  const std::string name = lower(channel), last = name.substr(name.rfind('.') + 1);
+  const std::string name = lowerCase(channel), last = name.substr(name.rfind('.') + 1);
   return last == "z" || last == "zback" || last == "depth" || name.find("crypto") != std::string::npos;
 }
 
