@@ -47,9 +47,9 @@ void EdgePasses::depthAt(int pass, Image<float>& viewZ) const {
   const auto number = static_cast<std::size_t>(pass);
   const glm::dvec2 offset = samples_[number] - 0.5;
   for (const Edge& edge : edges_) {
-    double z = edge.pixel.farther.z(offset.x, offset.y);
-    // Where surfaces meet, as a steep floor and its wall, the nearer one goes on behind the farther.
-    if (edge.seesNearer[number]) z = std::min(z, edge.pixel.nearer.z(offset.x, offset.y));
+    const double nearer = edge.pixel.nearer.z(offset.x, offset.y), farther = edge.pixel.farther.z(offset.x, offset.y);
+    // What is nearer where it ends may lean so much that its plane goes on behind the farther.
+    const double z = edge.pixel.meet || edge.seesNearer[number] ? std::min(nearer, farther) : farther;
     viewZ.at(edge.pixel.x, edge.pixel.y) = static_cast<float>(z);
   }
 }

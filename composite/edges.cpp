@@ -22,6 +22,7 @@ constexpr double kLimb = 6.1;
 // How much more a surface may bend at a step than a step before, seen from either end, whichever way it slopes: along
 // the diagonals of a ball it falls and rises again.
 constexpr double kOn = 2.0;
+constexpr int kNearestFirst[9][2] = {{0, 0}, {0, -1}, {-1, 0}, {1, 0}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
 constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
 // Surfaces whose colours differ by less, relative to the brighter, do not tell their shares.
 constexpr double kContrast = 1.0 / 16.0;
@@ -31,17 +32,9 @@ constexpr double kBetter = 0.8;         // continued colours must lie so much ne
 constexpr double kWhole = 1.0 / 64.0;   // alpha within it of 1 or 0 is that of a whole surface, or of nothing
 constexpr double kLeastOwn = 0.25;      // of a pixel whose neighbours lie mostly on its own surface
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
+constexpr double kTold = 1.0 / 8.0;     // less than this part of how far the mixture lies off the line is none either
 
 enum class Side : std::uint8_t { own, nearer, farther };
-
-// The plane of the pixel at `offset` from another one, about that other one.
-DepthPlane moved(const DepthPlane& plane, glm::dvec2 offset) {
-  if (!std::isfinite(plane.centre)) return plane;
-  const double linear = 1.0 + plane.across * -offset.x + plane.down * -offset.y;
-  if (!(linear > 0.0)) return {plane.centre, 0.0, 0.0, plane.orthographic};
-  return {plane.orthographic ? plane.centre * linear : plane.centre / linear, plane.across / linear,
-          plane.down / linear, plane.orthographic};
-}
 
 class Finder {
  public:
@@ -71,8 +64,9 @@ class Finder {
     double first, second, third;
     // More and more steeply, as towards a ball's limb.
     bool steepens() const {
-      const bool steeper = first * second >= 0.0 && second * third > 0.0 && std::abs(first) <= std::abs(second);
-      return steeper && std::abs(third) <= std::abs(second) + kLimb * std::abs(second - first);
+      const double one = std::abs(first), two = std::abs(second), three = std::abs(third);
+      return first * second >= 0.0 && second * third > 0.0 && one <= two && two <= three &&
+             three <= two + kLimb * (two - one);
     }
     // Bent at the third as at the second, whichever way they slope.
     bool goesOn() const {
@@ -93,11 +87,13 @@ class Finder {
   glm::dvec2 directionOf(int x, int y, Side other) const;
   std::optional<SideColour> unmixed(int x, int y, Side side) const;
   glm::dvec4 continued(int x, int y, Side side, const glm::dvec4& colour, glm::dvec2 offset) const;
-  std::optional<glm::dvec4> extreme(int x, int y, Side side, const glm::dvec4& opposite) const;
+  bool besideThird(int x, int y, Side other, int u, int v) const;
+  std::optional<glm::dvec4> extreme(int x, int y, Side side, Side other, const glm::dvec4& opposite) const;
   static void readAlpha(double alpha, Mixture& mixture);
   static std::optional<Mixture> mixtureOf(const glm::dvec4& colour, const Colours& colours);
   std::optional<Colours> coloursOf(int x, int y, Side other) const;
-  std::optional<DepthPlane> planeOf(int x, int y, Side other) const;
+  std::optional<PlaneNear> planeOf(int x, int y, Side side) const;
+  static void setPlanes(const PlaneNear& own, const PlaneNear& beside, Side other, EdgePixel& edge);
   std::optional<EdgePixel> edgeAt(int x, int y) const;
   std::optional<EdgePixel> edgeBeside(int x, int y, Side other, bool mostlyOwn) const;
 
@@ -262,45 +258,63 @@ glm::dvec4 Finder::continued(int x, int y, Side side, const glm::dvec4& colour, 
   return glm::max(colour + change * distance, glm::dvec4(0.0));
 }
 
-// Of things so narrow that an edge touches every pixel of theirs: the one least like the other side.
-std::optional<glm::dvec4> Finder::extreme(int x, int y, Side side, const glm::dvec4& opposite) const {
-  std::optional<glm::dvec4> found;
-  double farthest = 0.0;
+// Whether beside a pixel there is a surface that is neither the one of (x, y) nor on the side in question.
+bool Finder::besideThird(int x, int y, Side other, int u, int v) const {
+  for (int t = v - 1; t <= v + 1; ++t)
+    for (int s = u - 1; s <= u + 1; ++s) {
+      const Side side = inside(s, t) ? sideOf(x, y, s, t) : Side::own;
+      if (side != Side::own && side != other) return true;
+    }
+  return false;
+}
+
+// Of things so narrow that an edge touches every pixel of theirs: the one least like the opposite side, and rather one
+// that is mixed with nothing but that.
+std::optional<glm::dvec4> Finder::extreme(int x, int y, Side side, Side other, const glm::dvec4& opposite) const {
+  std::optional<glm::dvec4> found[2];  // beside two surfaces, beside more
+  double farthest[2] = {0.0, 0.0};
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) {
       if (!inside(u, v) || sideOf(x, y, u, v) != side) continue;
+      const int more = besideThird(x, y, other, u, v) ? 1 : 0;
       const glm::dvec4 colour(gbuffer_.beauty.at(u, v));
       const double distance = glm::length(colour - opposite);
-      if (!(distance > farthest)) continue;
-      farthest = distance;
-      found = colour;
+      if (!(distance > farthest[more])) continue;
+      farthest[more] = distance;
+      found[more] = colour;
     }
-  return found;
+  return found[0] ? found[0] : found[1];
 }
 
 std::optional<Finder::Colours> Finder::coloursOf(int x, int y, Side other) const {
   std::optional<SideColour> own = unmixed(x, y, Side::own), beside = unmixed(x, y, other);
   if (!own && !beside) return std::nullopt;
   if (!own)
-    if (const auto colour = extreme(x, y, Side::own, beside->nearest)) own = SideColour{*colour, *colour};
+    if (const auto colour = extreme(x, y, Side::own, other, beside->nearest)) own = SideColour{*colour, *colour};
   if (!beside)
-    if (const auto colour = extreme(x, y, other, own->nearest)) beside = SideColour{*colour, *colour};
+    if (const auto colour = extreme(x, y, other, other, own->nearest)) beside = SideColour{*colour, *colour};
   if (!own || !beside) return std::nullopt;
   return other == Side::nearer ? Colours{*beside, *own} : Colours{*own, *beside};
 }
 
-// The plane of the nearest neighbour on the other side, about the pixel's centre.
-std::optional<DepthPlane> Finder::planeOf(int x, int y, Side other) const {
-  std::optional<DepthPlane> found;
-  int nearest = std::numeric_limits<int>::max();
-  for (int v = y - 1; v <= y + 1; ++v)
-    for (int u = x - 1; u <= x + 1; ++u) {
-      const int squared = (u - x) * (u - x) + (v - y) * (v - y);
-      if (squared >= nearest || !inside(u, v) || sideOf(x, y, u, v) != other) continue;
-      nearest = squared;
-      found = moved(planes_.at(u, v), {u - x, v - y});
-    }
-  return found;
+// The plane of the nearest pixel on a side.
+std::optional<PlaneNear> Finder::planeOf(int x, int y, Side side) const {
+  for (const auto& [dx, dy] : kNearestFirst)
+    if (inside(x + dx, y + dy) && sideOf(x, y, x + dx, y + dy) == side)
+      return PlaneNear{planes_.at(x + dx, y + dy), {dx, dy}};
+  return std::nullopt;
+}
+
+// Each in front of the other where it is seen itself, they meet between. Otherwise one ends before the other, of which
+// a plane that has left the picture here tells no more than its depth.
+void Finder::setPlanes(const PlaneNear& own, const PlaneNear& beside, Side other, EdgePixel& edge) {
+  edge.nearer = other == Side::nearer ? beside : own;
+  edge.farther = other == Side::nearer ? own : beside;
+  const glm::dvec2 there = beside.from;
+  edge.meet = own.z(0.0, 0.0) < beside.z(0.0, 0.0) && beside.z(there.x, there.y) < own.z(there.x, there.y);
+  if (edge.meet || std::isfinite(beside.z(0.0, 0.0))) return;
+  (other == Side::nearer ? edge.nearer : edge.farther).plane = {beside.plane.centre, 0.0, 0.0,
+                                                                beside.plane.orthographic};
 }
 
 // Both colours corrected by what the mixture leaves of the pixel's, each as much as it counts.
@@ -355,9 +369,9 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
   const std::optional<Colours> colours = coloursOf(x, y, other);
   std::optional<Mixture> mixture = colours ? mixtureOf(colour, *colours) : std::nullopt;
   if (!mixture) return std::nullopt;
-  const std::optional<DepthPlane> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
+  const std::optional<PlaneNear> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
   if (!own || !beside) return std::nullopt;
-  if (std::isinf((other == Side::nearer ? own : beside)->centre)) readAlpha(colour.a, *mixture);
+  if (std::isinf((other == Side::nearer ? own : beside)->plane.centre)) readAlpha(colour.a, *mixture);
   EdgePixel edge;
   edge.x = x;
   edge.y = y;
@@ -366,9 +380,9 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
   // taken from where they do not belong.
   if (mostlyOwn && (other == Side::nearer ? 1.0 - edge.share : edge.share) < kLeastOwn) return std::nullopt;
   if (mostlyOwn) edge.share = other == Side::nearer ? std::min(edge.share, 0.5) : std::max(edge.share, 0.5);
-  if (!(edge.share > kPure && edge.share < 1.0 - kPure)) return std::nullopt;
-  edge.nearer = other == Side::nearer ? *beside : *own;
-  edge.farther = other == Side::nearer ? *own : *beside;
+  const double least = std::max(kPure, kTold * mixture->off);
+  if (!(edge.share > least && edge.share < 1.0 - least)) return std::nullopt;
+  setPlanes(*own, *beside, other, edge);
   edge.towardsNearer = directionOf(x, y, other);
   takeApart(colour, mixture->nearer, mixture->farther, edge);
   return edge;

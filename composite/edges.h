@@ -10,13 +10,23 @@
 
 namespace pellucid {
 
+// A surface as one pixel that shows it tells its plane, seen from a pixel close by.
+struct PlaneNear {
+  DepthPlane plane;
+  glm::dvec2 from{0.0};  // where that pixel lies, in pixels
+  // At an offset from the centre of the pixel that asks, in pixels, as DepthPlane::z.
+  double z(double x, double y) const { return plane.z(x - from.x, y - from.y); }
+};
+
 struct EdgePixel {
   int x = 0, y = 0;            // of the data window
   double share = 0.0;          // of the nearer surface in the pixel, (0,1)
   glm::vec3 nearerPart{0.0f};  // of the pixel's colour, per channel, [0,1]; the rest is the farther surface's
   float alpha = 1.0f;          // the pixel's, and those of its surfaces
   float nearerAlpha = 1.0f, fartherAlpha = 1.0f;
-  DepthPlane nearer, farther;     // about the pixel's centre
+  PlaneNear nearer, farther;
+  // Either surface goes behind the other where they meet, as a floor and its wall: whichever is nearer is seen there.
+  bool meet = false;
   glm::dvec2 towardsNearer{0.0};  // across the edge in the picture, unit, y down
 };
 

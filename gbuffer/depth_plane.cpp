@@ -54,6 +54,9 @@ std::optional<double> curvedSlope(const Line& line) {
   const int side = bends[0] == least ? 1 : -1;
   const double change = line.at(side) - 1.0;
   if (!(least <= 0.5 * std::abs(change))) return std::nullopt;
+  // A neighbour to the other side beyond which there is nothing tells no bend, but may lie much more level.
+  if (std::isnan(bends[side == 1 ? 1 : 0]) && std::abs(line.at(-side) - 1.0) < 0.5 * std::abs(change))
+    return std::nullopt;
   return side * (change - 0.5 * (line.at(2 * side) - 2.0 * line.at(side) + 1.0));
 }
 

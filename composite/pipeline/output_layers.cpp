@@ -72,8 +72,8 @@ ExtraLayer edgesLayer(const GBuffer& gbuffer, const std::vector<EdgePixel>* edge
   if (edges)
     for (const EdgePixel& edge : *edges) {
       share.at(edge.x, edge.y) = static_cast<float>(edge.share);
-      nearer.at(edge.x, edge.y) = static_cast<float>(edge.nearer.centre);
-      farther.at(edge.x, edge.y) = static_cast<float>(edge.farther.centre);
+      nearer.at(edge.x, edge.y) = static_cast<float>(edge.nearer.z(0.0, 0.0));
+      farther.at(edge.x, edge.y) = static_cast<float>(edge.farther.z(0.0, 0.0));
     }
   ExtraLayer layer{"edges", {}};
   layer.channels.emplace_back("share", std::move(share));

@@ -253,6 +253,64 @@ TEST(Edges, BallsHaveNoneButTheirLimb) {
   EXPECT_EQ(wrong, 0);
 }
 
+// A floor seen so steeply that its plane leaves the picture within a pixel behind the place where it meets the wall.
+struct MeetingPicture {
+  glm::dvec2 across;  // of the floor's 1/z, per pixel
+  double floor(glm::dvec2 at) const { return 0.0038 + glm::dot(across, at - 0.5 * kSize); }
+  static double wall(glm::dvec2 at) { return 0.0034 - 3e-5 * at.x + 1e-5 * at.y; }
+  double z(glm::dvec2 at) const { return 1.0 / std::max(floor(at), wall(at)); }
+  GBuffer picture() const {
+    GBuffer gbuffer;
+    gbuffer.display = gbuffer.data = {0, 0, kSize, kSize};
+    gbuffer.depthPrecision = 0x1p-20f;
+    gbuffer.beauty = Image<glm::vec4>(kSize, kSize);
+    gbuffer.viewZ = Image<float>(kSize, kSize);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        glm::dvec4 sum(0.0);
+        for (int i = 0; i < kFine * kFine; ++i) {
+          const glm::dvec2 at(x + (i % kFine + 0.5) / kFine, y + (i / kFine + 0.5) / kFine);
+          sum += floor(at) > wall(at) ? kFront : kBack;
+        }
+        gbuffer.beauty.at(x, y) = glm::vec4(sum / (1.0 * kFine * kFine));
+        gbuffer.viewZ.at(x, y) = static_cast<float>(z({x + 0.5, y + 0.5}));
+      }
+    return gbuffer;
+  }
+};
+
+// Layers behind the wall would shine through where passes look past it along the floor's plane, which ends there.
+TEST(Edges, WhereSurfacesMeetTheNearerIsSeen) {
+  int count = 0, left = 0;
+  double worst = 0.0;
+  for (const glm::dvec2 across : {glm::dvec2(-0.004, 0.0), {0.0, 0.0041}, {-0.0041, -0.0005}, {0.002, -0.003}}) {
+    const MeetingPicture meeting{across};
+    const GBuffer gbuffer = meeting.picture();
+    const DepthPlanes planes(gbuffer, Camera());
+    const std::vector<EdgePixel> pixels = edgePixels(gbuffer, planes);
+    std::vector<glm::dvec2> samples;
+    for (int i = 0; i < 8; ++i) samples.push_back(samplePosition(i, 8));
+    const EdgePasses edges(pixels, samples);
+    for (const EdgePixel& pixel : pixels) {
+      if (std::min({pixel.x, pixel.y, kSize - 1 - pixel.x, kSize - 1 - pixel.y}) < 3) continue;
+      ++count;
+      for (const glm::dvec2 corner : {glm::dvec2(-0.5, -0.5), {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}})
+        left +=
+            std::isinf(pixel.nearer.z(corner.x, corner.y)) || std::isinf(pixel.farther.z(corner.x, corner.y)) ? 1 : 0;
+      for (int i = 0; i < 8; ++i) {
+        Image<float> there = gbuffer.viewZ;
+        edges.depthAt(i, there);
+        const double right = meeting.z(glm::dvec2(pixel.x, pixel.y) + samples[static_cast<std::size_t>(i)]);
+        worst = std::max(worst, std::abs(static_cast<double>(there.at(pixel.x, pixel.y)) / right - 1.0));
+      }
+    }
+  }
+  std::printf("%d edge pixels, at %d of their corners a plane has left the picture; depth off by %.1e at most\n", count,
+              left, worst);
+  EXPECT_GT(left, 0);
+  EXPECT_LT(worst, 1e-3);
+}
+
 // What is not filtered has nothing to take apart, and neither has a colour that is no mixture of its neighbours'.
 TEST(Edges, WhatIsNoMixtureStaysWhole) {
   const Scene scene = kScenes[1];
