@@ -19,10 +19,12 @@ using reference::Vec4;
 constexpr double kRounding = 1e-5;
 // Of a place in the picture, pixels: the rays of a pass are those of floats.
 constexpr double kPlace = 1e-4;
-constexpr double kWide = 0.01;       // of such a margin, pixels: within it more than one edge may lie
-constexpr int kFewPasses = 4;        // may all see what few places see
-constexpr double kMostAslant = 3.0;  // at 70.5 degrees the 6 pixels of a texel and more are 2
-constexpr int kNear = 5;             // pixels within which another face may touch the slope of this one
+constexpr double kWide = 0.01;  // of such a margin, pixels: within it more than one edge may lie
+constexpr int kFewPasses = 4;   // may all see what few places see
+// Across the square that a pass stands for: of more than one, coarser levels of a texture count, and devices may take
+// 0.7 for 1.
+constexpr double kMostTexels = 0.7;
+constexpr int kNear = 5;  // pixels within which another face may touch the slope of this one
 
 }  // namespace
 
@@ -58,12 +60,12 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
       centres_.at(x, y) =
           reference::nearestSolid(picture.scene(), reference::rayThrough(picture.scene().eye, x + 0.5, y + 0.5));
   // The square that a pass stands for is what the density of all of them at the filter's middle leaves to each.
-  const double edge = std::max(1.0, 2.0 * flags.filter.radius) / std::sqrt(static_cast<double>(flags.passes));
+  edge_ = std::max(1.0, 2.0 * flags.filter.radius) / std::sqrt(static_cast<double>(flags.passes));
   for (std::size_t m = 0; m < picture.scene().meshes.size(); ++m)
     if (picture.scene().meshes[m].coat.covering == reference::Covering::mask && flags.softMask)
-      for (const int side : {-1, 1}) bands_.push_back({edge, side, static_cast<int>(m)});
+      for (const int side : {-1, 1}) bands_.push_back({edge_, side, static_cast<int>(m)});
   if (bands_.size() > 2)
-    for (const int side : {-1, 1}) bands_.push_back({edge, side, -1});
+    for (const int side : {-1, 1}) bands_.push_back({edge_, side, -1});
   // A corner comes to the eye through one product of floats: as far as the mesh's origin lies from the eye, and the
   // corner from that origin.
   const reference::Eye& eye = picture.scene().eye;
@@ -254,16 +256,10 @@ bool Statements::maybeTakenApart(int x, int y) const {
   return beside && faces.size() > 2;
 }
 
-// Whether a texture is seen so far aslant that its coarser levels count, of which the reference has none.
+// Whether the coarser levels of a texture count, of which the reference has none.
 bool Statements::hasCoarseTexels(int x, int y) const {
-  const auto isTextured = [&](const reference::Mesh& mesh) { return mesh.coat.texture >= 0; };
-  if (std::none_of(picture_.scene().meshes.begin(), picture_.scene().meshes.end(), isTextured)) return false;
   return std::any_of(places_.begin(), places_.end(), [&](const glm::dvec2& place) {
-    const Column column = picture_.columnAt(x + place.x, y + place.y);
-    return std::any_of(column.crossings.begin(), column.crossings.end(), [&](const reference::Crossing& crossing) {
-      return crossing.steep > kMostAslant &&
-             isTextured(picture_.scene().meshes[static_cast<std::size_t>(crossing.mesh)]);
-    });
+    return edge_ * picture_.texelsAPixel(x + place.x, y + place.y) > kMostTexels;
   });
 }
 

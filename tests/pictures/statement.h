@@ -72,6 +72,7 @@ class Statements {
   const Image<glm::vec4>& beauty_;
   std::vector<glm::dvec2> places_;
   Image<reference::Met> centres_;
+  double edge_ = 1.0;                      // of the square that a pass stands for, pixels
   double rounding_ = 0.0;                  // of positions as floats hold them, metres
   std::vector<reference::CutBand> bands_;  // rims of masks; none where they are as sharp as a ray
   double size_;

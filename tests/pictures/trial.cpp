@@ -121,7 +121,7 @@ std::string raysOf(const Trial& trial, int x, int y) {
     for (const reference::Crossing& crossing : column.crossings)
       told += fmt::format(" mesh {} covers {:.4f} at {:.9g}{}", crossing.mesh, crossing.layer.coverage,
                           crossing.layer.z, crossing.on.solid < 0 ? "" : " on it");
-    told += "\n";
+    told += fmt::format("; {:.3g} texels a pixel\n", picture.texelsAPixel(x + place.x, y + place.y));
   }
   return told;
 }

@@ -35,19 +35,29 @@ std::optional<Within> meet(const Ray& ray, const Vec3 (&corners)[3]) {
                 glm::dot(normal, ray.along) / (glm::length(normal) * glm::length(ray.along))};
 }
 
+// Of the plane of a triangle, also beyond its edges.
+Vec3 sharesOf(const Ray& ray, const Vec3 (&corners)[3]) {
+  const Vec3 volumes = volumesOf(ray, corners);
+  return volumes / (volumes.x + volumes.y + volumes.z);
+}
+
+// In the texture of a coat.
+Vec2 placeOf(const Mesh& mesh, const std::array<int, 3>& triangle, const Vec3& shares) {
+  Vec2 uv(0.0);
+  for (int k = 0; k < 3; ++k)
+    uv += shares[k] * mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])].uv;
+  return Vec2(mesh.coat.fromUv * Vec3(uv, 1.0));
+}
+
 // Straight colour of a coat.
 Vec4 colourOf(const PictureScene& scene, const Mesh& mesh, const std::array<int, 3>& triangle, const Vec3& shares) {
-  Vec2 uv(0.0);
   Vec4 colour(0.0);
-  for (int k = 0; k < 3; ++k) {
-    const Corner& corner = mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
-    uv += shares[k] * corner.uv;
-    colour += shares[k] * corner.colour;
-  }
+  for (int k = 0; k < 3; ++k)
+    colour += shares[k] * mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])].colour;
   const Coat& coat = mesh.coat;
   colour *= coat.colour;
   if (coat.texture >= 0)
-    colour *= texelAt(scene.textures[static_cast<std::size_t>(coat.texture)], Vec2(coat.fromUv * Vec3(uv, 1.0)));
+    colour *= texelAt(scene.textures[static_cast<std::size_t>(coat.texture)], placeOf(mesh, triangle, shares));
   return colour;
 }
 
@@ -92,26 +102,52 @@ Picture::Bounds Picture::boundsOf(const Mesh& mesh, const std::array<int, 3>& tr
   return {bounds.x0 - margin, bounds.y0 - margin, bounds.x1 + margin, bounds.y1 + margin};
 }
 
+template <class Take>
+void Picture::eachNear(std::size_t mesh, double x, double y, const Take& take) const {
+  const Mesh& it = scene_.meshes[mesh];
+  for (std::size_t t = 0; t < it.triangles.size(); ++t) {
+    const Bounds& in = bounds_[mesh][t];
+    if (x < in.x0 || x > in.x1 || y < in.y0 || y > in.y1) continue;
+    const auto at = [&](std::size_t k) { return it.corners[static_cast<std::size_t>(it.triangles[t][k])].at; };
+    const Vec3 corners[3] = {at(0), at(1), at(2)};
+    take(it.triangles[t], corners);
+  }
+}
+
+double Picture::texelsAPixel(double x, double y) const {
+  const Ray ray = rayThrough(scene_.eye, x, y);
+  double most = 0.0;
+  for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+    const Mesh& mesh = scene_.meshes[m];
+    if (mesh.coat.texture < 0) continue;
+    const Texels& texels = scene_.textures[static_cast<std::size_t>(mesh.coat.texture)];
+    eachNear(m, x, y, [&](const std::array<int, 3>& triangle, const Vec3(&corners)[3]) {
+      if (!meet(ray, corners)) return;
+      const auto placeAt = [&](double u, double v) {
+        return placeOf(mesh, triangle, sharesOf(rayThrough(scene_.eye, u, v), corners)) *
+               Vec2(texels.width, texels.height);
+      };
+      for (const Vec2 half : {Vec2(0.5, 0.0), Vec2(0.0, 0.5)})
+        most = std::max(most, glm::length(placeAt(x + half.x, y + half.y) - placeAt(x - half.x, y - half.y)));
+    });
+  }
+  return most;
+}
+
 Column Picture::columnAt(double x, double y, const CutBand& band) const {
   Column column;
   column.ray = rayThrough(scene_.eye, x, y);
   column.opaque = nearestSolid(scene_, column.ray);
   for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
     const Mesh& mesh = scene_.meshes[m];
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const Bounds& in = bounds_[m][t];
-      if (x < in.x0 || x > in.x1 || y < in.y0 || y > in.y1) continue;
-      const auto& triangle = mesh.triangles[t];
-      const auto corner = [&](std::size_t k) { return mesh.corners[static_cast<std::size_t>(triangle[k])].at; };
-      const Vec3 corners[3] = {corner(0), corner(1), corner(2)};
+    eachNear(m, x, y, [&](const std::array<int, 3>& triangle, const Vec3(&corners)[3]) {
       const auto within = meet(column.ray, corners);
-      if (!within || !(within->facing < 0.0 || mesh.coat.bothSides)) continue;
+      if (!within || !(within->facing < 0.0 || mesh.coat.bothSides)) return;
       const Vec4 colour = colourOf(scene_, mesh, triangle, within->shares);
       double covered = std::clamp(colour.a, 0.0, 1.0);
       if (mesh.coat.covering == Covering::mask) {
         const auto alphaAt = [&](double u, double v) {
-          const Vec3 volumes = volumesOf(rayThrough(scene_.eye, u, v), corners);
-          return colourOf(scene_, mesh, triangle, volumes / (volumes.x + volumes.y + volumes.z)).a;
+          return colourOf(scene_, mesh, triangle, sharesOf(rayThrough(scene_.eye, u, v), corners)).a;
         };
         // From pixel to pixel, in the row or column of the place or beside it.
         const auto change = [&](double dx, double dy) {
@@ -126,7 +162,7 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
         const double half = banded ? 0.5 * band.edge * (change(1.0, 0.0) + change(0.0, 1.0)) : 0.0;
         covered = colour.a + band.side * half >= mesh.coat.cutoff ? 1.0 : 0.0;
       }
-      if (!(covered > 0.0)) continue;
+      if (!(covered > 0.0)) return;
       Crossing crossing{{}, 1.0 / std::abs(within->facing), mesh.on, static_cast<int>(m)};
       crossing.layer.coverage = covered;
       const Vec3 shows = mesh.coat.glass ? mesh.coat.emission : Vec3(colour);
@@ -134,7 +170,7 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
       if (mesh.coat.glass) crossing.layer.transmission = {colour.r, colour.g, colour.b};
       crossing.layer.z = within->z;
       column.crossings.push_back(crossing);
-    }
+    });
   }
   std::sort(column.crossings.begin(), column.crossings.end(),
             [](const Crossing& a, const Crossing& b) { return a.layer.z < b.layer.z; });

@@ -40,6 +40,8 @@ class Picture {
   explicit Picture(const PictureScene& scene);
   const PictureScene& scene() const { return scene_; }
   Column columnAt(double x, double y, const CutBand& band = {}) const;
+  // The most texels that a texture changes by from pixel to pixel at a place, whether or not it covers anything there.
+  double texelsAPixel(double x, double y) const;
   // What is shown of an opaque face that lies at depth z: what lies on it is in front.
   //   airEnd  depth at which the air ends
   Shown shownBefore(const Column& column, const Face& face, double z, double airEnd) const;
@@ -55,6 +57,9 @@ class Picture {
     double x0, y0, x1, y1;
   };
   Bounds boundsOf(const Mesh& mesh, const std::array<int, 3>& triangle) const;
+  // Takes each triangle of a mesh that may lie at a place, and where its corners are.
+  template <class Take>
+  void eachNear(std::size_t mesh, double x, double y, const Take& take) const;
 
   const PictureScene& scene_;
   std::vector<std::vector<Bounds>> bounds_;  // by mesh and triangle
