@@ -176,10 +176,19 @@ void DepthPlanes::depthAt(glm::dvec2 sample, Image<float>& viewZ) const {
 
 void DepthPlanes::depthAt(glm::dvec2 sample, const Window& part, Image<float>& viewZ) const {
   const glm::dvec2 offset = sample - 0.5;
+  const auto precision = static_cast<double>(gbuffer_.depthPrecision);
   tbb::parallel_for(part.y0, part.y1, [&](int y) {
     for (int x = part.x0; x < part.x1; ++x) {
-      const float z = gbuffer_.viewZ.at(x, y);
-      viewZ.at(x, y) = std::isfinite(z) ? static_cast<float>(at(x, y).z(offset.x, offset.y)) : z;
+      const float centre = gbuffer_.viewZ.at(x, y);
+      if (!std::isfinite(centre)) {
+        viewZ.at(x, y) = centre;
+        continue;
+      }
+      double z = at(x, y).z(offset.x, offset.y);
+      // What the centre's depth was rounded by is a larger part of a nearer one; with perspective it stays the same
+      // part.
+      if (orthographic_) z += precision * std::max(static_cast<double>(centre) - z, 0.0);
+      viewZ.at(x, y) = static_cast<float>(z);
     }
   });
 }

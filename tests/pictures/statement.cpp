@@ -61,11 +61,16 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
           reference::nearestSolid(picture.scene(), reference::rayThrough(picture.scene().eye, x + 0.5, y + 0.5));
   // The square that a pass stands for is what the density of all of them at the filter's middle leaves to each.
   edge_ = std::max(1.0, 2.0 * flags.filter.radius) / std::sqrt(static_cast<double>(flags.passes));
+  std::vector<int> masks;
   for (std::size_t m = 0; m < picture.scene().meshes.size(); ++m)
     if (picture.scene().meshes[m].coat.covering == reference::Covering::mask && flags.softMask)
-      for (const int side : {-1, 1}) bands_.push_back({edge_, side, static_cast<int>(m)});
-  if (bands_.size() > 2)
-    for (const int side : {-1, 1}) bands_.push_back({edge_, side, -1});
+      masks.push_back(static_cast<int>(m));
+  for (const int side : {-1, 1}) {
+    for (const int mesh : masks) bands_.push_back({edge_, side, mesh});
+    if (masks.size() < 2) continue;
+    bands_.push_back({edge_, side});
+    for (const int mesh : masks) bands_.push_back({edge_, side, -1, mesh});  // through one rim another is seen
+  }
   // A corner comes to the eye through one product of floats: as far as the mesh's origin lies from the eye, and the
   // corner from that origin.
   const reference::Eye& eye = picture.scene().eye;
@@ -239,7 +244,9 @@ Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
   if (flags_.passes <= kFewPasses)
     return {Judged::filtered, mean, inner.allowed + glm::max(seen.high - mean, mean - seen.low), variance};
   const double noise = 1.0 / flags_.passes + weightSquares / (weights * weights);
-  return {Judged::filtered, mean, inner.allowed + 3.0 * glm::sqrt(variance * noise), variance};
+  // Passes count in whole ones: what a hundredth of the pixel shows is seen by none of five, or by a fifth of them.
+  const Vec4 half = (seen.high - seen.low) / (2.0 * flags_.passes);
+  return {Judged::filtered, mean, inner.allowed + 3.0 * glm::sqrt(variance * noise) + half, variance};
 }
 
 // Beside an edge and a third face a pixel of one face is no telling from one that is mixed a little.

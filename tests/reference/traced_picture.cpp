@@ -160,7 +160,8 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
         };
         const bool banded = band.side != 0 && (band.mesh < 0 || band.mesh == static_cast<int>(m));
         const double half = banded ? 0.5 * band.edge * (change(1.0, 0.0) + change(0.0, 1.0)) : 0.0;
-        covered = colour.a + band.side * half >= mesh.coat.cutoff ? 1.0 : 0.0;
+        const int side = band.against == static_cast<int>(m) ? -band.side : band.side;
+        covered = colour.a + side * half >= mesh.coat.cutoff ? 1.0 : 0.0;
       }
       if (!(covered > 0.0)) return;
       Crossing crossing{{}, 1.0 / std::abs(within->facing), mesh.on, static_cast<int>(m)};

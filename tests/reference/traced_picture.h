@@ -26,7 +26,8 @@ struct Column {
 struct CutBand {
   double edge = 0.0;  // that part
   int side = 0;
-  int mesh = -1;  // of which alone; -1: of all
+  int mesh = -1;     // of which alone; -1: of all
+  int against = -1;  // of all, the one that is cut the other way
 };
 // What layers do to the background.
 struct Shown {

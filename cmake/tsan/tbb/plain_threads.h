@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <list>
 #include <map>
 #include <mutex>
@@ -117,16 +118,20 @@ void parallel_invoke(const First& first, const Second& second) {
 template <class Value>
 class enumerable_thread_specific {
  public:
+  enumerable_thread_specific() : make_([] { return Value(); }) {}
+  template <class Make>
+  explicit enumerable_thread_specific(Make make) : make_(std::move(make)) {}
   Value& local() {
     const std::lock_guard<std::mutex> lock(changing_);
     Value*& mine = own_[std::this_thread::get_id()];
-    if (!mine) mine = &values_.emplace_back();
+    if (!mine) mine = &values_.emplace_back(make_());
     return *mine;
   }
   auto begin() { return values_.begin(); }
   auto end() { return values_.end(); }
 
  private:
+  std::function<Value()> make_;
   std::mutex changing_;
   std::list<Value> values_;
   std::map<std::thread::id, Value*> own_;
