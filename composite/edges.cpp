@@ -28,6 +28,7 @@ constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
 constexpr double kContrast = 1.0 / 16.0;
 // How far a mixture may lie from the line between the two colours, as a part of its length.
 constexpr double kOffLine = 0.25;
+constexpr double kOnLine = 1.0 / 64.0;  // within so much of it no other colours are needed
 constexpr double kBetter = 0.8;         // continued colours must lie so much nearer to the line
 constexpr double kWhole = 1.0 / 64.0;   // alpha within it of 1 or 0 is that of a whole surface, or of nothing
 constexpr double kLeastOwn = 0.25;      // of a pixel whose neighbours lie mostly on its own surface
@@ -342,7 +343,7 @@ std::optional<Finder::Mixture> Finder::mixtureOf(const glm::dvec4& colour, const
       if (!(length > kContrast * std::max(glm::length(nearer), glm::length(farther)))) continue;
       const double share = std::clamp(glm::dot(colour - farther, across) / (length * length), 0.0, 1.0);
       const double off = glm::length(colour - farther - share * across) / length;
-      if (off > kOffLine || (best && !(off < kBetter * best->off))) continue;
+      if (off > kOffLine || (best && (best->off < kOnLine || !(off < kBetter * best->off)))) continue;
       best = Mixture{nearer, farther, share, off};
     }
   return best;

@@ -144,6 +144,7 @@ void Statements::eachCut(const Column& column, const Face& face, double nearest,
     Column other = column;  // which of the two is nearer floats do not tell
     std::swap(other.crossings[i - 1], other.crossings[i]);
     std::swap(other.crossings[i - 1].layer.z, other.crossings[i].layer.z);
+    takeCut(other, nearest);
     takeCut(other, farthest);
   }
 }
