@@ -16,6 +16,10 @@ namespace {
 
 // Two pixels lie on different surfaces where each is farther from the other's plane than this, relative to its depth.
 constexpr double kApart = 1.0 / 256.0;
+// A plane whose slope is told by more than one neighbour changes by more from pixel to pixel, relative...
+constexpr double kSteep = 1.0 / 16.0;
+// ...and misses a surface by more, relative, where it is not that surface's.
+constexpr double kMissed = 1.0 / 16.0;
 // How much more the slope of a ball may change at its limb than a pixel before: by as much where the limb passes
 // through the pixel's centre.
 constexpr double kLimb = 6.1;
@@ -36,6 +40,10 @@ constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
 constexpr double kTold = 1.0 / 8.0;     // less than this part of how far the mixture lies off the line is none either
 
 enum class Side : std::uint8_t { own, nearer, farther };
+
+bool isSteep(const DepthPlane& plane, int dx, int dy) {
+  return std::abs(plane.across * dx + plane.down * dy) > kSteep;
+}
 
 class Finder {
  public:
@@ -112,10 +120,12 @@ bool Finder::apart(int x, int y, int u, int v) const {
   if (!here || !there) return here != there;
   const auto z = static_cast<double>(gbuffer_.viewZ.at(x, y)), other = static_cast<double>(gbuffer_.viewZ.at(u, v));
   const double least = kApart * std::min(z, other);
-  if (std::abs(z - other) <= least) return false;
-  if (std::abs(planes_.at(x, y).z(u - x, v - y) - other) <= least ||
-      std::abs(planes_.at(u, v).z(x - u, y - v) - z) <= least)
-    return false;
+  const DepthPlane own = planes_.at(x, y), beside = planes_.at(u, v);
+  const double ownOff = std::abs(own.z(u - x, v - y) - other), besideOff = std::abs(beside.z(x - u, y - v) - z);
+  // A pixel in whose middle surfaces meet lies on the plane of either.
+  const bool ownMisses = isSteep(own, u - x, v - y) && ownOff > kMissed * other;
+  const bool besideMisses = isSteep(beside, u - x, v - y) && besideOff > kMissed * z;
+  if (std::min({std::abs(z - other), ownOff, besideOff}) <= least && !ownMisses && !besideMisses) return false;
   if (std::max(std::abs(u - x), std::abs(v - y)) > 1) return true;
   const int dx = u - x, dy = v - y;
   const std::optional<Bends> from = bendsOf(x, y, dx, dy), back = bendsOf(u, v, -dx, -dy);
