@@ -9,23 +9,12 @@
 #include <numeric>
 #include <optional>
 
+#include "composite/surface_sides.h"
 #include "gbuffer/finite_colour.h"
 
 namespace pellucid {
 namespace {
 
-// Two pixels lie on different surfaces where each is farther from the other's plane than this, relative to its depth.
-constexpr double kApart = 1.0 / 256.0;
-// A plane whose slope is told by more than one neighbour changes by more from pixel to pixel, relative...
-constexpr double kSteep = 1.0 / 16.0;
-// ...and misses a surface by more, relative, where it is not that surface's.
-constexpr double kMissed = 1.0 / 16.0;
-// How much more the slope of a ball may change at its limb than a pixel before: by as much where the limb passes
-// through the pixel's centre.
-constexpr double kLimb = 6.1;
-// How much more a surface may bend at a step than a step before, seen from either end, whichever way it slopes: along
-// the diagonals of a ball it falls and rises again.
-constexpr double kOn = 2.0;
 constexpr int kNearestFirst[9][2] = {{0, 0}, {0, -1}, {-1, 0}, {1, 0}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
 constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
 // Surfaces whose colours differ by less, relative to the brighter, do not tell their shares.
@@ -39,16 +28,10 @@ constexpr double kLeastOwn = 0.25;      // of a pixel whose neighbours lie mostl
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
 constexpr double kTold = 1.0 / 8.0;     // less than this part of how far the mixture lies off the line is none either
 
-enum class Side : std::uint8_t { own, nearer, farther };
-
-bool isSteep(const DepthPlane& plane, int dx, int dy) {
-  return std::abs(plane.across * dx + plane.down * dy) > kSteep;
-}
-
 class Finder {
  public:
   Finder(const GBuffer& gbuffer, const DepthPlanes& planes)
-      : gbuffer_(gbuffer), planes_(planes), width_(gbuffer.viewZ.width()), height_(gbuffer.viewZ.height()) {}
+      : gbuffer_(gbuffer), planes_(planes), sides_(gbuffer, planes) {}
   std::vector<EdgePixel> find();
 
  private:
@@ -68,30 +51,6 @@ class Finder {
     Side other = Side::own;  // own: none of the neighbours lies there
     bool mostlyOwn = false;  // of the 3 x 3 pixels more lie on the pixel's side of the edge
   };
-  // Three steps in a row.
-  struct Bends {
-    double first, second, third;
-    // More and more steeply, as towards a ball's limb.
-    bool steepens() const {
-      const double one = std::abs(first), two = std::abs(second), three = std::abs(third);
-      return first * second >= 0.0 && second * third > 0.0 && one <= two && two <= three &&
-             three <= two + kLimb * (two - one);
-    }
-    // Bent at the third as at the second, whichever way they slope.
-    bool goesOn() const {
-      const double bend = second - first, next = third - second;
-      return bend * next > 0.0 && std::abs(next) <= kOn * std::abs(bend);
-    }
-  };
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
-  bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
-  bool apart(int x, int y, int u, int v) const;
-  std::optional<Bends> bendsOf(int x, int y, int dx, int dy) const;
-  void markSteps();
-  void markBesideEdges();
-  bool breaksBetween(int x, int y, int u, int v) const;
-  bool joined(int x, int y, int u, int v) const;
-  Side sideOf(int x, int y, int u, int v) const;
   std::array<Beside, 2> besideOf(int x, int y) const;
   glm::dvec2 directionOf(int x, int y, Side other) const;
   std::optional<SideColour> unmixed(int x, int y, Side side) const;
@@ -108,101 +67,16 @@ class Finder {
 
   const GBuffer& gbuffer_;
   const DepthPlanes& planes_;
-  int width_, height_;
-  Image<std::uint8_t> steps_;  // by bit, as kSteps: from the pixel to that neighbour the surface breaks off
-  Image<std::uint8_t> besideEdge_;
+  SurfaceSides sides_;
 };
-
-constexpr int kSteps[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-
-bool Finder::apart(int x, int y, int u, int v) const {
-  const bool here = hit(x, y), there = hit(u, v);
-  if (!here || !there) return here != there;
-  const auto z = static_cast<double>(gbuffer_.viewZ.at(x, y)), other = static_cast<double>(gbuffer_.viewZ.at(u, v));
-  const double least = kApart * std::min(z, other);
-  const DepthPlane own = planes_.at(x, y), beside = planes_.at(u, v);
-  const double ownOff = std::abs(own.z(u - x, v - y) - other), besideOff = std::abs(beside.z(x - u, y - v) - z);
-  // A pixel in whose middle surfaces meet lies on the plane of either.
-  const bool ownMisses = isSteep(own, u - x, v - y) && ownOff > kMissed * other;
-  const bool besideMisses = isSteep(beside, u - x, v - y) && besideOff > kMissed * z;
-  if (std::min({std::abs(z - other), ownOff, besideOff}) <= least && !ownMisses && !besideMisses) return false;
-  if (std::max(std::abs(u - x), std::abs(v - y)) > 1) return true;
-  const int dx = u - x, dy = v - y;
-  const std::optional<Bends> from = bendsOf(x, y, dx, dy), back = bendsOf(u, v, -dx, -dy);
-  if ((from && from->steepens()) || (back && back->steepens())) return false;
-  return !(from && back && from->goesOn() && back->goesOn());
-}
-
-// Of the step from a pixel to a neighbour and the two before it. Nothing where something was not hit.
-std::optional<Finder::Bends> Finder::bendsOf(int x, int y, int dx, int dy) const {
-  double at[4];
-  for (int k = 0; k < 4; ++k) {
-    const int u = x + (k - 2) * dx, v = y + (k - 2) * dy;
-    if (!inside(u, v) || !hit(u, v)) return std::nullopt;
-    const auto z = static_cast<double>(gbuffer_.viewZ.at(u, v));
-    at[k] = planes_.at(u, v).orthographic ? z : 1.0 / z;  // linear on planes, which never bend so
-  }
-  return Bends{at[1] - at[0], at[2] - at[1], at[3] - at[2]};
-}
-
-void Finder::markSteps() {
-  steps_ = Image<std::uint8_t>(width_, height_, 0);
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
-      for (int k = 0; k < 4; ++k) {
-        const int u = x + kSteps[k][0], v = y + kSteps[k][1];
-        if (inside(u, v) && apart(x, y, u, v)) steps_.at(x, y) |= static_cast<std::uint8_t>(1 << k);
-      }
-  });
-}
-
-// Of two pixels side by side.
-bool Finder::breaksBetween(int x, int y, int u, int v) const {
-  if (v < y || (v == y && u < x)) return breaksBetween(u, v, x, y);
-  const int k = v == y ? 0 : 2 + u - x;
-  return steps_.at(x, y) >> k & 1;
-}
-
-void Finder::markBesideEdges() {
-  besideEdge_ = Image<std::uint8_t>(width_, height_, 0);
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
-      for (int v = y - 1; v <= y + 1 && !besideEdge_.at(x, y); ++v)
-        for (int u = x - 1; u <= x + 1; ++u)
-          if (inside(u, v) && (u != x || v != y) && breaksBetween(x, y, u, v)) besideEdge_.at(x, y) = 1;
-  });
-}
-
-// Whether the surface goes on from pixel to pixel along the line between two: where it bends, as towards the limb of a
-// ball, planes say nothing of pixels farther off.
-bool Finder::joined(int x, int y, int u, int v) const {
-  const int steps = std::max(std::abs(u - x), std::abs(v - y));
-  int fromX = x, fromY = y;
-  for (int i = 1; i <= steps; ++i) {
-    const int toX = x + (2 * (u - x) * i + (u < x ? -steps : steps)) / (2 * steps);
-    const int toY = y + (2 * (v - y) * i + (v < y ? -steps : steps)) / (2 * steps);
-    if (breaksBetween(fromX, fromY, toX, toY)) return false;
-    fromX = toX;
-    fromY = toY;
-  }
-  return true;
-}
-
-// On which side of pixel (x, y)'s surface another pixel lies.
-Side Finder::sideOf(int x, int y, int u, int v) const {
-  if ((u == x && v == y) || !apart(x, y, u, v) || joined(x, y, u, v)) return Side::own;
-  if (!hit(x, y)) return Side::nearer;
-  if (!hit(u, v)) return Side::farther;
-  return static_cast<double>(gbuffer_.viewZ.at(u, v)) < planes_.at(x, y).z(u - x, v - y) ? Side::nearer : Side::farther;
-}
 
 // First the side on which more of the eight neighbours lie, those that share an edge with the pixel counting twice.
 std::array<Finder::Beside, 2> Finder::besideOf(int x, int y) const {
   int weight[3] = {0, 0, 0}, count[3] = {0, 0, 0};
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) {
-      if (!inside(u, v)) continue;
-      const auto side = static_cast<std::size_t>(sideOf(x, y, u, v));
+      if (!sides_.inside(u, v)) continue;
+      const auto side = static_cast<std::size_t>(sides_.sideOf(x, y, u, v));
       weight[side] += u == x || v == y ? 2 : 1;
       ++count[side];
     }
@@ -221,8 +95,8 @@ glm::dvec2 Finder::directionOf(int x, int y, Side other) const {
   glm::dvec2 moment(0.0);
   for (int v = y - 2; v <= y + 2; ++v)
     for (int u = x - 2; u <= x + 2; ++u) {
-      if (!inside(u, v)) continue;
-      const Side side = sideOf(x, y, u, v);
+      if (!sides_.inside(u, v)) continue;
+      const Side side = sides_.sideOf(x, y, u, v);
       const bool isNearer = side == Side::nearer || (other == Side::farther && side == Side::own);
       moment += (isNearer ? 1.0 : -1.0) * glm::dvec2(u - x, v - y);
     }
@@ -238,7 +112,8 @@ std::optional<Finder::SideColour> Finder::unmixed(int x, int y, Side side) const
   for (int v = y - kReach; v <= y + kReach; ++v)
     for (int u = x - kReach; u <= x + kReach; ++u) {
       const int squared = (u - x) * (u - x) + (v - y) * (v - y);
-      if (squared > nearest || !inside(u, v) || besideEdge_.at(u, v) || sideOf(x, y, u, v) != side) continue;
+      if (squared > nearest || !sides_.inside(u, v) || sides_.touchesEdge(u, v) || sides_.sideOf(x, y, u, v) != side)
+        continue;
       const glm::vec4& colour = gbuffer_.beauty.at(u, v);
       if (!isFinite(colour)) continue;
       if (squared < nearest) {
@@ -262,7 +137,7 @@ glm::dvec4 Finder::continued(int x, int y, Side side, const glm::dvec4& colour, 
   if (!(distance > 0.5)) return colour;
   const glm::dvec2 next = offset * ((distance + 1.5) / distance);
   const int u = x + static_cast<int>(std::lround(next.x)), v = y + static_cast<int>(std::lround(next.y));
-  if (!inside(u, v) || besideEdge_.at(u, v) || sideOf(x, y, u, v) != side) return colour;
+  if (!sides_.inside(u, v) || sides_.touchesEdge(u, v) || sides_.sideOf(x, y, u, v) != side) return colour;
   const double farther = glm::length(glm::dvec2(u - x, v - y));
   if (!(farther > distance + 0.5) || !isFinite(gbuffer_.beauty.at(u, v))) return colour;
   const glm::dvec4 change = (colour - glm::dvec4(gbuffer_.beauty.at(u, v))) / (farther - distance);
@@ -273,7 +148,7 @@ glm::dvec4 Finder::continued(int x, int y, Side side, const glm::dvec4& colour, 
 bool Finder::besideThird(int x, int y, Side other, int u, int v) const {
   for (int t = v - 1; t <= v + 1; ++t)
     for (int s = u - 1; s <= u + 1; ++s) {
-      const Side side = inside(s, t) ? sideOf(x, y, s, t) : Side::own;
+      const Side side = sides_.inside(s, t) ? sides_.sideOf(x, y, s, t) : Side::own;
       if (side != Side::own && side != other) return true;
     }
   return false;
@@ -286,7 +161,7 @@ std::optional<glm::dvec4> Finder::extreme(int x, int y, Side side, Side other, c
   double farthest[2] = {0.0, 0.0};
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) {
-      if (!inside(u, v) || sideOf(x, y, u, v) != side) continue;
+      if (!sides_.inside(u, v) || sides_.sideOf(x, y, u, v) != side) continue;
       const int more = besideThird(x, y, other, u, v) ? 1 : 0;
       const glm::dvec4 colour(gbuffer_.beauty.at(u, v));
       const double distance = glm::length(colour - opposite);
@@ -311,7 +186,7 @@ std::optional<Finder::Colours> Finder::coloursOf(int x, int y, Side other) const
 // The plane of the nearest pixel on a side.
 std::optional<PlaneNear> Finder::planeOf(int x, int y, Side side) const {
   for (const auto& [dx, dy] : kNearestFirst)
-    if (inside(x + dx, y + dy) && sideOf(x, y, x + dx, y + dy) == side)
+    if (sides_.inside(x + dx, y + dy) && sides_.sideOf(x, y, x + dx, y + dy) == side)
       return PlaneNear{planes_.at(x + dx, y + dy), {dx, dy}};
   return std::nullopt;
 }
@@ -400,12 +275,11 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
 }
 
 std::vector<EdgePixel> Finder::find() {
-  markSteps();
-  markBesideEdges();
-  std::vector<std::vector<EdgePixel>> rows(static_cast<std::size_t>(height_));
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
-      if (besideEdge_.at(x, y))
+  const int height = gbuffer_.viewZ.height(), width = gbuffer_.viewZ.width();
+  std::vector<std::vector<EdgePixel>> rows(static_cast<std::size_t>(height));
+  tbb::parallel_for(0, height, [&](int y) {
+    for (int x = 0; x < width; ++x)
+      if (sides_.touchesEdge(x, y))
         if (const std::optional<EdgePixel> edge = edgeAt(x, y)) rows[static_cast<std::size_t>(y)].push_back(*edge);
   });
   std::vector<EdgePixel> all;
