@@ -31,6 +31,10 @@ constexpr double kBetter = 0.8;         // continued colours must lie so much ne
 constexpr double kWhole = 1.0 / 64.0;   // alpha within it of 1 or 0 is that of a whole surface, or of nothing
 constexpr double kLeastOwn = 0.25;      // of a pixel whose neighbours lie mostly on its own surface
 constexpr double kPure = 1.0 / 4096.0;  // less of a surface is none
+// How far around an edge pixel its neighbours' edges, the steps that tell these and the planes that tell those are
+// read: colours lie within kReach and are continued from less than twice as far.
+constexpr int kBesideAround = 8, kStepsAround = 10;
+static_assert(kStepsAround + 4 <= kEdgeSurroundings);
 
 enum class Side : std::uint8_t { own, nearer, farther };
 
@@ -45,8 +49,12 @@ DepthPlane moved(const DepthPlane& plane, glm::dvec2 offset) {
 
 class Finder {
  public:
-  Finder(const GBuffer& gbuffer, const DepthPlanes& planes)
-      : gbuffer_(gbuffer), planes_(planes), width_(gbuffer.viewZ.width()), height_(gbuffer.viewZ.height()) {}
+  Finder(const GBuffer& gbuffer, const DepthPlanes& planes, const Window& part)
+      : gbuffer_(gbuffer),
+        planes_(planes),
+        part_(part),
+        width_(gbuffer.viewZ.width()),
+        height_(gbuffer.viewZ.height()) {}
   std::vector<EdgePixel> find();
 
  private:
@@ -80,6 +88,10 @@ class Finder {
       return bend * next > 0.0 && std::abs(next) <= kOn * std::abs(bend);
     }
   };
+  Window around(int reach) const {  // the part, as far as the picture goes
+    return {std::max(part_.x0 - reach, 0), std::max(part_.y0 - reach, 0), std::min(part_.x1 + reach, width_),
+            std::min(part_.y1 + reach, height_)};
+  }
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
   bool apart(int x, int y, int u, int v) const;
@@ -103,6 +115,7 @@ class Finder {
 
   const GBuffer& gbuffer_;
   const DepthPlanes& planes_;
+  Window part_;
   int width_, height_;
   Image<std::uint8_t> steps_;  // by bit, as kSteps: from the pixel to that neighbour the surface breaks off
   Image<std::uint8_t> besideEdge_;
@@ -140,8 +153,9 @@ std::optional<Finder::Bends> Finder::bendsOf(int x, int y, int dx, int dy) const
 
 void Finder::markSteps() {
   steps_ = Image<std::uint8_t>(width_, height_, 0);
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
+  const Window asked = around(kStepsAround);
+  tbb::parallel_for(asked.y0, asked.y1, [&](int y) {
+    for (int x = asked.x0; x < asked.x1; ++x)
       for (int k = 0; k < 4; ++k) {
         const int u = x + kSteps[k][0], v = y + kSteps[k][1];
         if (inside(u, v) && apart(x, y, u, v)) steps_.at(x, y) |= static_cast<std::uint8_t>(1 << k);
@@ -158,8 +172,9 @@ bool Finder::breaksBetween(int x, int y, int u, int v) const {
 
 void Finder::markBesideEdges() {
   besideEdge_ = Image<std::uint8_t>(width_, height_, 0);
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
+  const Window asked = around(kBesideAround);
+  tbb::parallel_for(asked.y0, asked.y1, [&](int y) {
+    for (int x = asked.x0; x < asked.x1; ++x)
       for (int v = y - 1; v <= y + 1 && !besideEdge_.at(x, y); ++v)
         for (int u = x - 1; u <= x + 1; ++u)
           if (inside(u, v) && (u != x || v != y) && breaksBetween(x, y, u, v)) besideEdge_.at(x, y) = 1;
@@ -378,8 +393,8 @@ std::vector<EdgePixel> Finder::find() {
   markSteps();
   markBesideEdges();
   std::vector<std::vector<EdgePixel>> rows(static_cast<std::size_t>(height_));
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
+  tbb::parallel_for(part_.y0, part_.y1, [&](int y) {
+    for (int x = part_.x0; x < part_.x1; ++x)
       if (besideEdge_.at(x, y))
         if (const std::optional<EdgePixel> edge = edgeAt(x, y)) rows[static_cast<std::size_t>(y)].push_back(*edge);
   });
@@ -390,8 +405,12 @@ std::vector<EdgePixel> Finder::find() {
 
 }  // namespace
 
+std::vector<EdgePixel> edgePixels(const GBuffer& gbuffer, const DepthPlanes& planes, const Window& part) {
+  return Finder(gbuffer, planes, part).find();
+}
+
 std::vector<EdgePixel> edgePixels(const GBuffer& gbuffer, const DepthPlanes& planes) {
-  return Finder(gbuffer, planes).find();
+  return edgePixels(gbuffer, planes, {0, 0, gbuffer.viewZ.width(), gbuffer.viewZ.height()});
 }
 
 }  // namespace pellucid
