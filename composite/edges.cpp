@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kNearestFirst[9][2] = {{0, 0}, {0, -1}, {-1, 0}, {1, 0}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
 constexpr int kReach = 3;  // pixels in which unmixed neighbours are looked for
+static_assert(kSidesAround <= kEdgeSurroundings);
+static_assert(2 * kReach < kTouchAround);  // colours are continued from less than twice as far
 // Surfaces whose colours differ by less, relative to the brighter, do not tell their shares.
 constexpr double kContrast = 1.0 / 16.0;
 // How far a mixture may lie from the line between the two colours, as a part of its length.
@@ -30,8 +32,8 @@ constexpr double kTold = 1.0 / 8.0;     // less than this part of how far the mi
 
 class Finder {
  public:
-  Finder(const GBuffer& gbuffer, const DepthPlanes& planes)
-      : gbuffer_(gbuffer), planes_(planes), sides_(gbuffer, planes) {}
+  Finder(const GBuffer& gbuffer, const DepthPlanes& planes, const Window& part)
+      : gbuffer_(gbuffer), planes_(planes), part_(part), sides_(gbuffer, planes, part) {}
   std::vector<EdgePixel> find();
 
  private:
@@ -67,6 +69,7 @@ class Finder {
 
   const GBuffer& gbuffer_;
   const DepthPlanes& planes_;
+  Window part_;
   SurfaceSides sides_;
 };
 
@@ -275,10 +278,9 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
 }
 
 std::vector<EdgePixel> Finder::find() {
-  const int height = gbuffer_.viewZ.height(), width = gbuffer_.viewZ.width();
-  std::vector<std::vector<EdgePixel>> rows(static_cast<std::size_t>(height));
-  tbb::parallel_for(0, height, [&](int y) {
-    for (int x = 0; x < width; ++x)
+  std::vector<std::vector<EdgePixel>> rows(static_cast<std::size_t>(gbuffer_.viewZ.height()));
+  tbb::parallel_for(part_.y0, part_.y1, [&](int y) {
+    for (int x = part_.x0; x < part_.x1; ++x)
       if (sides_.touchesEdge(x, y))
         if (const std::optional<EdgePixel> edge = edgeAt(x, y)) rows[static_cast<std::size_t>(y)].push_back(*edge);
   });
@@ -289,8 +291,12 @@ std::vector<EdgePixel> Finder::find() {
 
 }  // namespace
 
+std::vector<EdgePixel> edgePixels(const GBuffer& gbuffer, const DepthPlanes& planes, const Window& part) {
+  return Finder(gbuffer, planes, part).find();
+}
+
 std::vector<EdgePixel> edgePixels(const GBuffer& gbuffer, const DepthPlanes& planes) {
-  return Finder(gbuffer, planes).find();
+  return edgePixels(gbuffer, planes, {0, 0, gbuffer.viewZ.width(), gbuffer.viewZ.height()});
 }
 
 }  // namespace pellucid

@@ -32,7 +32,11 @@ struct EdgePixel {
 
 // Of a flat picture, row by row. A pixel is among them where its neighbours lie on two surfaces, one behind the other,
 // and its colour is a mixture of theirs: of the nearest pixels to either side that no edge touches.
+//   part    the pixels that are asked about, in pixels of the data window; without it all of them
+//   planes  of the part and of kEdgeSurroundings pixels around it, where the picture has them
+std::vector<EdgePixel> edgePixels(const GBuffer& gbuffer, const DepthPlanes& planes, const Window& part);
 std::vector<EdgePixel> edgePixels(const GBuffer& gbuffer, const DepthPlanes& planes);
+constexpr int kEdgeSurroundings = 14;
 
 // How the passes of --aa see edge pixels: each sees one of the two surfaces, which the edge's direction deals to it, so
 // that transparency is composited over either side at its own depth. Passes weigh as much as the part of the surface

@@ -39,6 +39,7 @@ struct ScatteringTerms {
 };
 
 glm::vec4 summed(const std::vector<ScatteringTerms>& terms, std::size_t plane) {
+  if (terms.size() == 1) return terms.front().sums[plane] + 0.0f;  // which the sums hold exactly, and no -0
   glm::vec4 largest(0.0f);
   for (const ScatteringTerms& one : terms) largest = glm::max(largest, glm::abs(one.sums[plane]));
   if (largest == glm::vec4(0.0f)) return largest;

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "composite/denormals.h"
-#include "composite/wide_gather.h"
+#include "composite/wide_gaussian.h"
+#include "composite/wide_pyramid.h"
 
 namespace pellucid {
 
@@ -81,17 +82,33 @@ Spreading spreadingOf(const OitPlanes& planes) {
   return all.most > 0.0f ? all : Spreading{};
 }
 
-// D^2 of the pixels that diffuse, for the lanes.
-Image<float> varianceOf(shading::LookupText& text) {
-  const Window& pixels = text.diffusing;
-  Image<float> variance(pixels.width() + shading::LookupText::kBeyond, pixels.height());
-  tbb::parallel_for(0, pixels.height(), [&](int row) {
-    for (int x = pixels.x0; x < pixels.x1; ++x) {
-      const glm::ivec2 pixel(x, pixels.y0 + row);
-      variance.at(x - pixels.x0, row) = text.isFiniteColour(text.backdropColour(pixel)) ? text.spreadAt(pixel) : -1.0f;
-    }
+constexpr int kStrip = 16;  // columns that are filled together: what is read of a row of theirs lies side by side
+
+// Calls work(x0, x1) for strips of the columns from x0 to x1, in parallel.
+template <class Work>
+void overStrips(int x0, int x1, const Work& work) {
+  tbb::parallel_for(0, (x1 - x0 + kStrip - 1) / kStrip, [&](int strip) {
+    const FlushDenormals flush;
+    const int first = x0 + strip * kStrip;
+    work(first, std::min(first + kStrip, x1));
   });
-  return variance;
+}
+
+// The pixels that diffuse, for the lanes.
+Columns tapsOf(shading::LookupText& text) {
+  const Window& pixels = text.diffusing;
+  Columns taps(pixels, shading::kTapPlanes, -1.0f);
+  overStrips(pixels.x0, pixels.x1, [&](int x0, int x1) {
+    for (int y = pixels.y0; y < pixels.y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const glm::ivec2 pixel(x, y);
+        const glm::vec4 colour = text.backdropColour(pixel);
+        for (int k = 0; k < 4; ++k) *taps.at(shading::kTapColour + k, x, y) = colour[k];
+        *taps.at(shading::kTapDepth, x, y) = text.backdropDepth(pixel);
+        *taps.at(shading::kTapVariance, x, y) = text.isFiniteColour(colour) ? text.spreadAt(pixel) : -1.0f;
+      }
+  });
+  return taps;
 }
 
 }  // namespace
@@ -111,17 +128,14 @@ LookupText::LookupText(const BackdropView& seen, const OitPlanes& scattering, co
   const Spreading spreading = spreadingOf(scattering);
   diffusing = {spreading.pixels.x0 + place.x, spreading.pixels.y0 + place.y, spreading.pixels.x1 + place.x,
                spreading.pixels.y1 + place.y};
-  spreadOfTaps = varianceOf(*this);
+  taps = tapsOf(*this);
   if (settings.exact) return;
   choice.levels = spreadLevel(kernelSpread(spreading.most, choice.largestSpread));
   for (int k = 1; k <= choice.levels; ++k) {
     SpreadLevel level(k, width(), height(), k == 1 ? diffusing : spreadLevels.back().holding);
-    tbb::parallel_for(tbb::blocked_range<int>(level.holding.y0, level.holding.y1),
-                      [&](const tbb::blocked_range<int>& rows) {
-                        const FlushDenormals flush;
-                        for (int y = rows.begin(); y != rows.end(); ++y) wideHalvedRow(*this, k, y, level);
-                      });
+    overStrips(level.holding.x0, level.holding.x1, [&](int x0, int x1) { wideHalved(*this, k, x0, x1, level); });
     level.repeat();
+    tbb::parallel_for(0, level.leastReach.width(), [&](int block) { level.summarise(block); });
     spreadLevels.push_back(std::move(level));
   }
 }

@@ -1,5 +1,6 @@
 // Eight floats side by side. Every lane gives the bits of the same operations on one float: nothing is contracted.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -19,9 +20,27 @@ typedef float Float4 __attribute__((vector_size(16)));       // NOLINT
 typedef float Float8 __attribute__((vector_size(32)));       // NOLINT: an attribute of the type
 typedef std::int32_t Int8 __attribute__((vector_size(32)));  // NOLINT: of comparisons, -1 where true
 
+// The same wherever they lie. What is copied by memcpy is moved in two halves, which the next load would wait for.
+typedef float Float8Anywhere __attribute__((vector_size(32), aligned(4), may_alias));  // NOLINT
+
 // By reference: how such vectors are passed by value depends on the processor.
 inline void load(const float* from, Float8& to) {
-  std::memcpy(&to, from, sizeof to);
+  to = *reinterpret_cast<const Float8Anywhere*>(from);
+}
+inline void store(const Float8& from, float* to) {
+  *reinterpret_cast<Float8Anywhere*>(to) = from;
+}
+inline bool anyOf(const Int8& lanes) {
+  typedef std::int64_t Two __attribute__((vector_size(16)));   // NOLINT
+  typedef std::int64_t Four __attribute__((vector_size(32)));  // NOLINT
+  const Four pairs = reinterpret_cast<Four>(lanes);
+  const Two either = __builtin_shufflevector(pairs, pairs, 0, 1) | __builtin_shufflevector(pairs, pairs, 2, 3);
+  return (either[0] | either[1]) != 0;
+}
+// Lane by lane, which the compiler makes one operation of.
+inline void rootOf(const Float8& x, Float8& root) {
+  root = Float8{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3]),
+                std::sqrt(x[4]), std::sqrt(x[5]), std::sqrt(x[6]), std::sqrt(x[7])};
 }
 // Four floats, 1 and nothing.
 inline void loadFourAndOne(const float* from, Float8& to) {
@@ -65,5 +84,29 @@ struct LossySum {
     value = counts ? sum : value;
   }
 };
+
+// Four floats, and four others.
+inline void loadTwo(const float* low, const float* high, Float8& to) {
+  Float4 first, second;
+  std::memcpy(&first, low, sizeof first);
+  std::memcpy(&second, high, sizeof second);
+  to = __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+// Five sums of eight rows, a lane a row, as eight rows of five sums.
+inline void byRows(const Float8 (&sums)[5], Float8 (&rows)[kLanes]) {
+  const Float8 a = __builtin_shufflevector(sums[0], sums[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 b = __builtin_shufflevector(sums[0], sums[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Float8 c = __builtin_shufflevector(sums[2], sums[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 d = __builtin_shufflevector(sums[2], sums[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Float8 four[4] = {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13),
+                          __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15),
+                          __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
+                          __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+  for (int k = 0; k < 4; ++k) {
+    rows[k] = __builtin_shufflevector(four[k], Float8{sums[4][k]}, 0, 1, 2, 3, 8, 9, 10, 11);
+    rows[k + 4] = __builtin_shufflevector(four[k], Float8{sums[4][k + 4]}, 4, 5, 6, 7, 8, 9, 10, 11);
+  }
+}
 
 }  // namespace pellucid::lanes

@@ -1,5 +1,5 @@
 // The shared text of the lookup in C++, with the functions by which it reads the picture; the loops over taps that take
-// most of the time have a form of lanes with the same bits (wide_gather).
+// most of the time have a form of lanes with the same bits (wide_gaussian, wide_pyramid).
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -9,15 +9,17 @@
 
 namespace pellucid::shading {
 
+// What a gather reads of a pixel: its colour, its depth, and D^2, which is -1 where the colour is not finite.
+enum TapPlane { kTapColour, kTapDepth = 4, kTapVariance, kTapPlanes };
+
 // What the text reads.
 struct LookupSource {
   BackdropView backdrop;
   const OitPlanes* planes = nullptr;
   ivec2 placeOfPlanes = ivec2(0);              // their first pixel, in the backdrop
   Window diffusing = {};                       // pixels of the backdrop, all that diffuse among them
-  Image<float> spreadOfTaps = {};              // of these: D^2, -1 where the backdrop is not finite; kBeyond wider
+  Columns taps = {};                           // of these, by TapPlane
   std::vector<SpreadLevel> spreadLevels = {};  // [0] is level 1
-  static constexpr int kBeyond = 8;
 
   int width() const { return backdrop.z->width(); }
   int height() const { return backdrop.z->height(); }
@@ -37,10 +39,12 @@ struct GatherText : LookupSource {
     const bool inside = x >= 0 && y >= 0 && x < planes->refraction.width() && y < planes->refraction.height();
     return inside ? planes->refraction.at(x, y).w : 0.0f;
   }
-  const SpreadTexel& spreadTexel(int level, ivec2 texel) const {
+  SpreadTexel spreadTexel(int level, ivec2 texel) const {
     return spreadLevels[static_cast<std::size_t>(level - 1)].clamped(texel);
   }
-  const SpreadBody& spreadBody(int level, ivec2 texel) const { return spreadTexel(level, texel).body; }
+  SpreadBody spreadBody(int level, ivec2 texel) const {
+    return spreadLevels[static_cast<std::size_t>(level - 1)].clampedBody(texel);
+  }
 
 #define PLD_FN inline
 #define precise

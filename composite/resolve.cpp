@@ -73,6 +73,15 @@ void hideSolids(OitPlanes& planes) {
       if (scattersAt(planes, x, y)) planes.solid.at(x, y) = kNoSolid;
 }
 
+bool hidesSolids(const FragmentLists& lists, const OitPlanes& planes) {
+  if (!planes.scatters()) return false;
+  const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
+  for (int y = 0; y < lists.solid.height(); ++y)
+    for (int x = 0; x < lists.solid.width(); ++x)
+      if (std::isfinite(lists.solid.at(x, y).a) && scattersAt(planes, left + x, top + y)) return true;
+  return false;
+}
+
 void hideSolids(FragmentLists& lists, const OitPlanes& planes) {
   if (!planes.scatters()) return;
   const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;

@@ -28,6 +28,8 @@ Veil resolve(const OitPlanes& planes, const ResolveSettings& settings);
 //   planes  hold what scatters in the lists' pixels
 void hideSolids(OitPlanes& planes);
 void hideSolids(FragmentLists& lists, const OitPlanes& planes);
+// Whether that changes the lists.
+bool hidesSolids(const FragmentLists& lists, const OitPlanes& planes);
 
 // Applies the background to the pixels of the veil that refract or diffuse; the others are left alone.
 void showThrough(const Lookups& lookups, Veil& veil);

@@ -1,12 +1,31 @@
 // The levels of shaders/shared/spread_pyramid.glsl in memory.
 #pragma once
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
-#include "gbuffer/image.h"
+#include "composite/columns.h"
 #include "shaders/spread_pyramid_text.h"
 
 namespace pellucid::shading {
+
+// The numbers of a texel, each a plane of its own.
+enum SpreadPlane {
+  kSpreadColour,  // and the three after it
+  kSpreadMass = 4,
+  kLeastReach,
+  kMostReach,
+  kLeastRate,
+  kMostRate,
+  kReachColour,
+  kRateColour = kReachColour + 4,
+  kReachMass = kRateColour + 4,
+  kRateMass,
+  kSpreadPlanes
+};
+constexpr int kSpreadSums = kSpreadMass + 1;  // what a kernel adds up
+static_assert(sizeof(SpreadTexel) == kSpreadPlanes * sizeof(float) &&
+              sizeof(SpreadBody) == kReachColour * sizeof(float));
 
 // Texels lie from -PLD_SPREAD_MARGIN to the level's size and PLD_SPREAD_MARGIN: beyond, a clamped picture repeats them
 // exactly. Those of `holding` alone may hold something that diffuses; `stored` are in memory, which are the same and,
@@ -14,12 +33,11 @@ namespace pellucid::shading {
 struct SpreadLevel {
   int width, height;  // of the picture's part
   Window holding, stored;
-  Image<SpreadTexel> texels;  // of `stored`
-  // Of the texels' bodies, for a look at many of them: -1 and +inf where nothing diffuses. Wider than `stored` by
-  // kBeyond.
+  Columns texels;  // of `stored`, by SpreadPlane
+  // Of blocks of texels from the first of `stored` on, those that hold something: the least of leastReach, the most of
+  // mostRate; where nothing is, such as no comparison finds.
   Image<float> leastReach, mostRate;
-  static constexpr int kBeyond = 8;
-  static constexpr int kRepeated = PLD_SPREAD_TAPS / 2;
+  static constexpr int kRepeated = PLD_SPREAD_TAPS / 2, kBlock = 8;
 
   //   below  the pixels that diffuse, or `holding` of the level before
   SpreadLevel(int level, int pictureWidth, int pictureHeight, const Window& below)
@@ -34,39 +52,63 @@ struct SpreadLevel {
     if (stored.y0 == -PLD_SPREAD_MARGIN) stored.y0 -= kRepeated;
     if (stored.x1 == width + PLD_SPREAD_MARGIN) stored.x1 += kRepeated;
     if (stored.y1 == height + PLD_SPREAD_MARGIN) stored.y1 += kRepeated;
-    texels = Image<SpreadTexel>(stored.width(), stored.height());
-    leastReach = Image<float>(stored.width() + kBeyond, stored.height());
-    mostRate = leastReach;
+    texels = Columns(stored, kSpreadPlanes, 0.0f);
+    const int across = (stored.width() + kBlock - 1) / kBlock, down = (stored.height() + kBlock - 1) / kBlock;
+    leastReach = Image<float>(across, down, std::numeric_limits<float>::infinity());
+    mostRate = Image<float>(across, down, -std::numeric_limits<float>::infinity());
   }
   // Of a texel wherever it lies.
-  const SpreadTexel& clamped(ivec2 texel) const {
-    constexpr int margin = PLD_SPREAD_MARGIN;
-    const int x = std::clamp(texel.x, -margin, width + margin - 1);
-    const int y = std::clamp(texel.y, -margin, height + margin - 1);
-    if (x < holding.x0 || y < holding.y0 || x >= holding.x1 || y >= holding.y1) return nothing();
-    return texels.at(x - stored.x0, y - stored.y0);
-  }
-  // A texel of `holding`.
+  SpreadTexel clamped(ivec2 texel) const { return read<SpreadTexel>(texel); }
+  SpreadBody clampedBody(ivec2 texel) const { return read<SpreadBody>(texel); }
+  // A texel of `stored`.
   void set(ivec2 texel, const SpreadTexel& value) {
-    const int x = texel.x - stored.x0, y = texel.y - stored.y0;
-    texels.at(x, y) = value;
-    const bool any = value.body.mass > 0.0f;
-    leastReach.at(x, y) = any ? value.body.leastReach : -1.0f;
-    mostRate.at(x, y) = any ? value.body.mostRate : std::numeric_limits<float>::infinity();
+    float numbers[kSpreadPlanes];
+    std::memcpy(numbers, &value, sizeof value);
+    for (int k = 0; k < kSpreadPlanes; ++k) *texels.at(k, texel.x, texel.y) = numbers[k];
   }
   // After all of `holding`: the texels that repeat them.
   void repeat() {
     for (int y = stored.y0; y < stored.y1; ++y)
       for (int x = stored.x0; x < stored.x1; ++x) {
         const ivec2 own(std::clamp(x, holding.x0, holding.x1 - 1), std::clamp(y, holding.y0, holding.y1 - 1));
-        if (own.x != x || own.y != y) set(ivec2(x, y), texels.at(own.x - stored.x0, own.y - stored.y0));
+        if (own.y == y && own.x == x) x = holding.x1;  // between them lie the texels that are there
+        if (x < stored.x1) set(ivec2(x, y), clamped(ivec2(std::clamp(x, holding.x0, holding.x1 - 1), own.y)));
       }
+  }
+  // After all of `stored`: a column of blocks.
+  void summarise(int block) {
+    const int first = stored.x0 + block * kBlock;
+    for (int x = first; x < std::min(first + kBlock, stored.x1); ++x) {
+      const float* mass = texels.at(kSpreadMass, x, stored.y0);
+      const float* reach = texels.at(kLeastReach, x, stored.y0);
+      const float* rate = texels.at(kMostRate, x, stored.y0);
+      for (int i = 0; i < stored.height(); ++i) {
+        if (!(mass[i] > 0.0f)) continue;
+        float& least = leastReach.at(block, i / kBlock);
+        float& most = mostRate.at(block, i / kBlock);
+        least = std::min(least, reach[i]);
+        most = std::max(most, rate[i]);
+      }
+    }
   }
 
  private:
-  static const SpreadTexel& nothing() {
-    static const SpreadTexel empty = emptySpreadTexel();
-    return empty;
+  template <class Texel>
+  Texel read(ivec2 texel) const {
+    constexpr int margin = PLD_SPREAD_MARGIN;
+    const int x = std::clamp(texel.x, -margin, width + margin - 1);
+    const int y = std::clamp(texel.y, -margin, height + margin - 1);
+    Texel result;
+    if (x < holding.x0 || y < holding.y0 || x >= holding.x1 || y >= holding.y1) {
+      const SpreadTexel nothing = emptySpreadTexel();
+      std::memcpy(&result, &nothing, sizeof result);
+      return result;
+    }
+    float numbers[sizeof(Texel) / sizeof(float)];
+    int k = 0;
+    for (float& number : numbers) number = *texels.at(k++, x, y);
+    std::memcpy(&result, numbers, sizeof result);
+    return result;
   }
   static int sizeOf(int level, int size) { return (size + (1 << level) - 1) >> level; }
   // A texel t reads those from 2t - 1 to 2t + 2 below it.

@@ -20,6 +20,9 @@ constexpr double kLimb = 6.1;
 // How much more a surface may bend at a step than a step before, seen from either end, whichever way it slopes: along
 // the diagonals of a ball it falls and rises again.
 constexpr double kOn = 2.0;
+// Steps tell what touches an edge, planes tell steps: around a part each is needed somewhat farther.
+constexpr int kStepsAround = kTouchAround + 2;
+static_assert(kStepsAround + 4 <= kSidesAround);
 constexpr int kSteps[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 
 bool isSteep(const DepthPlane& plane, int dx, int dy) {
@@ -28,10 +31,16 @@ bool isSteep(const DepthPlane& plane, int dx, int dy) {
 
 }  // namespace
 
-SurfaceSides::SurfaceSides(const GBuffer& gbuffer, const DepthPlanes& planes)
-    : gbuffer_(gbuffer), planes_(planes), width_(gbuffer.viewZ.width()), height_(gbuffer.viewZ.height()) {
+SurfaceSides::SurfaceSides(const GBuffer& gbuffer, const DepthPlanes& planes, const Window& part)
+    : gbuffer_(gbuffer), planes_(planes), part_(part), width_(gbuffer.viewZ.width()), height_(gbuffer.viewZ.height()) {
   markSteps();
   markTouching();
+}
+
+// The part, as far as the picture goes.
+Window SurfaceSides::around(int reach) const {
+  return {std::max(part_.x0 - reach, 0), std::max(part_.y0 - reach, 0), std::min(part_.x1 + reach, width_),
+          std::min(part_.y1 + reach, height_)};
 }
 
 bool SurfaceSides::Bends::steepens() const {
@@ -83,8 +92,9 @@ std::optional<SurfaceSides::Bends> SurfaceSides::bendsOf(int x, int y, int dx, i
 
 void SurfaceSides::markSteps() {
   steps_ = Image<std::uint8_t>(width_, height_, 0);
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
+  const Window asked = around(kStepsAround);
+  tbb::parallel_for(asked.y0, asked.y1, [&](int y) {
+    for (int x = asked.x0; x < asked.x1; ++x)
       for (int k = 0; k < 4; ++k) {
         const int u = x + kSteps[k][0], v = y + kSteps[k][1];
         if (inside(u, v) && apart(x, y, u, v)) steps_.at(x, y) |= static_cast<std::uint8_t>(1 << k);
@@ -101,8 +111,9 @@ bool SurfaceSides::breaksBetween(int x, int y, int u, int v) const {
 
 void SurfaceSides::markTouching() {
   touchesEdge_ = Image<std::uint8_t>(width_, height_, 0);
-  tbb::parallel_for(0, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
+  const Window asked = around(kTouchAround);
+  tbb::parallel_for(asked.y0, asked.y1, [&](int y) {
+    for (int x = asked.x0; x < asked.x1; ++x)
       for (int v = y - 1; v <= y + 1 && !touchesEdge_.at(x, y); ++v)
         for (int u = x - 1; u <= x + 1; ++u)
           if (inside(u, v) && (u != x || v != y) && breaksBetween(x, y, u, v)) touchesEdge_.at(x, y) = 1;

@@ -9,12 +9,16 @@
 
 namespace pellucid {
 
+constexpr int kTouchAround = 8, kSidesAround = 14;
+
 enum class Side : std::uint8_t { own, nearer, farther };
 
 class SurfaceSides {
  public:
   // Both must outlive this.
-  SurfaceSides(const GBuffer& gbuffer, const DepthPlanes& planes);
+  //   part    the pixels whose sides are asked for, and what touches edges kTouchAround pixels around them
+  //   planes  of the part and of kSidesAround pixels around it, where the picture has them
+  SurfaceSides(const GBuffer& gbuffer, const DepthPlanes& planes, const Window& part);
 
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   // Whether a surface breaks off between the pixel and one of the eight about it.
@@ -35,6 +39,7 @@ class SurfaceSides {
   bool apart(int x, int y, int u, int v) const;
   bool onPlanes(int x, int y, int u, int v) const;
   std::optional<Bends> bendsOf(int x, int y, int dx, int dy) const;
+  Window around(int reach) const;
   void markSteps();
   void markTouching();
   bool breaksBetween(int x, int y, int u, int v) const;
@@ -42,6 +47,7 @@ class SurfaceSides {
 
   const GBuffer& gbuffer_;
   const DepthPlanes& planes_;
+  Window part_;
   int width_, height_;
   Image<std::uint8_t> steps_;  // by bit, as kSteps: from the pixel to that neighbour the surface breaks off
   Image<std::uint8_t> touchesEdge_;

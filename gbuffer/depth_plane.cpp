@@ -113,29 +113,38 @@ class NormalSlopes {
   glm::dvec2 origin_, step_;
 };
 
-// What is linear, of all pixels; NaN where nothing was hit.
-Image<double> linearOf(const Image<float>& viewZ, bool orthographic) {
-  Image<double> linear(viewZ.width(), viewZ.height());
-  tbb::parallel_for(0, viewZ.height(), [&](int y) {
-    for (int x = 0; x < viewZ.width(); ++x) {
-      const auto z = static_cast<double>(viewZ.at(x, y));
-      linear.at(x, y) = !std::isfinite(z) ? kNone : orthographic ? z : 1.0 / z;
-    }
-  });
-  return linear;
-}
-
-Line lineThrough(const Image<double>& linear, int x, int y, int dx, int dy, double rounding) {
-  Line line{};
-  line.rounding = rounding;
-  const double scale = 1.0 / linear.at(x, y);
-  for (int k = -kReach; k <= kReach; ++k) {
-    const int u = x + k * dx, v = y + k * dy;
-    const bool inside = u >= 0 && v >= 0 && u < linear.width() && v < linear.height();
-    line.value[static_cast<std::size_t>(k + kReach)] = inside ? linear.at(u, v) * scale : kNone;
+// What is linear, of the pixels of a part and of all that tell their slopes; NaN where nothing was hit.
+class LinearDepth {
+ public:
+  LinearDepth(const Image<float>& viewZ, bool orthographic, const Window& part)
+      : known_{std::max(part.x0 - kReach, 0), std::max(part.y0 - kReach, 0), std::min(part.x1 + kReach, viewZ.width()),
+               std::min(part.y1 + kReach, viewZ.height())},
+        linear_(known_.width(), known_.height()) {
+    tbb::parallel_for(known_.y0, known_.y1, [&](int y) {
+      for (int x = known_.x0; x < known_.x1; ++x) {
+        const auto z = static_cast<double>(viewZ.at(x, y));
+        linear_.at(x - known_.x0, y - known_.y0) = !std::isfinite(z) ? kNone : orthographic ? z : 1.0 / z;
+      }
+    });
   }
-  return line;
-}
+  double at(int x, int y) const { return linear_.at(x - known_.x0, y - known_.y0); }
+  // Through a pixel of the part.
+  Line through(int x, int y, int dx, int dy, double rounding) const {
+    Line line{};
+    line.rounding = rounding;
+    const double scale = 1.0 / at(x, y);
+    for (int k = -kReach; k <= kReach; ++k) {
+      const int u = x + k * dx, v = y + k * dy;
+      const bool inside = u >= known_.x0 && v >= known_.y0 && u < known_.x1 && v < known_.y1;
+      line.value[static_cast<std::size_t>(k + kReach)] = inside ? at(u, v) * scale : kNone;
+    }
+    return line;
+  }
+
+ private:
+  Window known_;
+  Image<double> linear_;
+};
 
 }  // namespace
 
@@ -144,29 +153,33 @@ std::optional<double> slopeAlong(const PlaneValues& values, double precision) {
 }
 
 DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
+    : DepthPlanes(gbuffer, camera, {0, 0, gbuffer.viewZ.width(), gbuffer.viewZ.height()}) {}
+
+DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera, const Window& part)
     : gbuffer_(gbuffer),
       orthographic_(camera.orthographic),
-      slopes_(gbuffer.viewZ.width(), gbuffer.viewZ.height(), glm::vec2(0.0f)) {
-  const Image<double> linear = linearOf(gbuffer.viewZ, orthographic_);
+      part_(part),
+      slopes_(part.width(), part.height(), glm::vec2(0.0f)) {
+  const LinearDepth linear(gbuffer.viewZ, orthographic_, part);
   const NormalSlopes normals(gbuffer, camera);
   const double rounding = roundingOf(static_cast<double>(gbuffer.depthPrecision));
-  tbb::parallel_for(0, linear.height(), [&](int y) {
-    for (int x = 0; x < linear.width(); ++x) {
+  tbb::parallel_for(part.y0, part.y1, [&](int y) {
+    for (int x = part.x0; x < part.x1; ++x) {
       if (std::isnan(linear.at(x, y))) continue;
       for (const int axis : {0, 1}) {
-        const Line line = lineThrough(linear, x, y, 1 - axis, axis, rounding);
+        const Line line = linear.through(x, y, 1 - axis, axis, rounding);
         std::optional<double> slope = slopeOf(line);
         if (!slope)
           if (const auto byNormal = normals.at(x, y, static_cast<double>(gbuffer.viewZ.at(x, y))))
             slope = (*byNormal)[axis];
-        slopes_.at(x, y)[axis] = static_cast<float>(slope ? *slope : pairSlope(line));
+        slopes_.at(x - part.x0, y - part.y0)[axis] = static_cast<float>(slope ? *slope : pairSlope(line));
       }
     }
   });
 }
 
 DepthPlane DepthPlanes::at(int x, int y) const {
-  const glm::dvec2 slope(slopes_.at(x, y));
+  const glm::dvec2 slope(slopes_.at(x - part_.x0, y - part_.y0));
   return {static_cast<double>(gbuffer_.viewZ.at(x, y)), slope.x, slope.y, orthographic_};
 }
 

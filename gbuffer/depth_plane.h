@@ -37,11 +37,14 @@ std::optional<double> slopeAlong(const PlaneValues& values, double precision);
 class DepthPlanes {
  public:
   //   gbuffer  must outlive this; its depth is what it was when this was made
+  //   part     the pixels whose planes are told, in pixels of the data window; without it all of them
+  DepthPlanes(const GBuffer& gbuffer, const Camera& camera, const Window& part);
   DepthPlanes(const GBuffer& gbuffer, const Camera& camera);
 
-  // Of a pixel of the data window whose depth is finite.
+  const Window& part() const { return part_; }
+  // Of a pixel of the part whose depth is finite.
   DepthPlane at(int x, int y) const;
-  // The depth of all pixels at one place in each of them.
+  // The depth of all pixels at one place in each of them; all must be of the part.
   //   sample  (0..1, y down), (0.5, 0.5) the centre
   void depthAt(glm::dvec2 sample, Image<float>& viewZ) const;
   // Of the pixels of a part alone, in pixels of the data window.
@@ -50,7 +53,8 @@ class DepthPlanes {
  private:
   const GBuffer& gbuffer_;
   bool orthographic_;
-  Image<glm::vec2> slopes_;  // DepthPlane::across and down
+  Window part_;
+  Image<glm::vec2> slopes_;  // of the part: DepthPlane::across and down
 };
 
 }  // namespace pellucid

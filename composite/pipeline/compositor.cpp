@@ -117,8 +117,7 @@ void Compositor::takeOver(const Request& request) {
     throw;
   }
   if (shot_->keptPicture) {
-    depthPlanes_ = std::move(kept_->depthPlanes);
-    edges_ = std::move(kept_->edges);
+    depth_ = std::move(kept_->depth);
   }
   if (shot_->keptScene) triangles_ = std::move(kept_->triangles);
   placed_ = !triangles_;
@@ -134,8 +133,7 @@ Compositor::~Compositor() {
     kept_->forget();
     kept_->shot = std::move(shot_);
     kept_->triangles = std::move(triangles_);
-    kept_->depthPlanes = std::move(depthPlanes_);
-    kept_->edges = std::move(edges_);
+    kept_->depth = std::move(depth_);
   }
   if (kept_.use_count() == 1) device_.close();
 }
@@ -166,26 +164,19 @@ TransparentPass* Compositor::triangles() {
   return triangles_.get();
 }
 
-const DepthPlanes* Compositor::depthPlanes(const Plan& plan) {
+const DepthPlanes* Compositor::depthPlanes(const Plan& plan, const Window& area) {
   if (plan.passes == 1 && !plan.pictureMoves) return nullptr;
   // Deep layers belong to whole pixels: they are held out by what lies at the pixel's centre.
   if (shot_->deepOpaque && (plan.pictureMoves || !shot_->deep.empty())) return nullptr;
-  if (!depthPlanes_)
-    depthPlanes_ = journal_.time("depth planes",
-                                 [&] { return std::make_unique<DepthPlanes>(shot_->opaque.gbuffer, shot_->camera); });
-  return depthPlanes_.get();
+  return &depth_.planes(shot_->opaque.gbuffer, shot_->camera, area, journal_);
 }
 
-const std::vector<EdgePixel>& Compositor::edges(const Plan& plan) {
-  if (!edges_) edges_ = journal_.time("edges", [&] { return edgePixels(shot_->opaque.gbuffer, *depthPlanes(plan)); });
-  return *edges_;
-}
-
-std::unique_ptr<EdgePasses> Compositor::edgePasses(const Plan& plan) {
+std::unique_ptr<EdgePasses> Compositor::edgePasses(const Plan& plan, const Window& area) {
   if (!plan.edges) return nullptr;
   std::vector<glm::dvec2> samples;
   for (int i = 0; i < plan.passes; ++i) samples.push_back(samplePass(plan.pass, plan, i).sample);
-  return std::make_unique<EdgePasses>(edges(plan), std::move(samples));
+  return std::make_unique<EdgePasses>(depth_.edges(shot_->opaque.gbuffer, shot_->camera, area, journal_),
+                                      std::move(samples));
 }
 
 const Lighting& Compositor::lightOf(const Request& request) {
@@ -223,18 +214,19 @@ Compositor::Run Compositor::prepare(const Request& request) {
   }
   if (run.plan.fitsWeight) {
     RunCounts unused;
-    const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
-    PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), pass, shot_->camera,
-                       run.lighting->picture.gbuffer->data);
+    const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan, run.lighting->picture.gbuffer->data);
+    PassPicture moving(run.lighting->picture, depthPlanes(run.plan, run.lighting->picture.gbuffer->data), edges.get(),
+                       pass, shot_->camera, run.lighting->picture.gbuffer->data);
     const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
     run.pass.weight = run.plan.pass.weight = fittedWeight(context, moving, run.pass);
   }
   const auto* systems = run.plan.as<PaintSystems>();
   if (systems && fitsAny(*systems)) {
     RunCounts unused;
-    const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+    const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan, run.lighting->picture.gbuffer->data);
     const PaintContext context{run.plan, *shot_, run.lighting->picture, *run.sources, device_, journal_, unused};
-    run.plan.paint = fittedSystems(context, run.pass, depthPlanes(run.plan), edges.get());
+    run.plan.paint =
+        fittedSystems(context, run.pass, depthPlanes(run.plan, run.lighting->picture.gbuffer->data), edges.get());
   }
   return run;
 }
@@ -258,13 +250,13 @@ Window Compositor::paintedArea(const Plan& plan, const Run& run) const {
 
 Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run& run, Journal& journal,
                        RunCounts& counts, Image<float>* unseen) {
-  const std::unique_ptr<EdgePasses> edges = edgePasses(plan);
   PassMotion motion(*run.request, plan, run.lens, *shot_, triangles(), device_);
   PassSettings pass = settings;
   const Window& data = run.lighting->picture.gbuffer->data;
   const Window area = motion.moves() ? data : paintedArea(plan, run);
+  const std::unique_ptr<EdgePasses> edges = edgePasses(plan, area);
   if (area != data) pass.area = area;  // else passes at other resolutions take the settings too
-  PassPicture moving(run.lighting->picture, depthPlanes(plan), edges.get(), triangles(), shot_->camera, area);
+  PassPicture moving(run.lighting->picture, depthPlanes(plan, area), edges.get(), triangles(), shot_->camera, area);
   if (unseen) moving.countUnseen();
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);
@@ -303,9 +295,9 @@ Result Compositor::run(const Request& request) {
 }
 
 Choice Compositor::probed(const Run& run, double tolerance) {
-  const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
-  PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), triangles(), shot_->camera,
-                     run.lighting->picture.gbuffer->data);
+  const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan, run.lighting->picture.gbuffer->data);
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan, run.lighting->picture.gbuffer->data), edges.get(),
+                     triangles(), shot_->camera, run.lighting->picture.gbuffer->data);
   RunCounts unused;
   const PaintContext context{run.plan, *shot_, moving.picture(), *run.sources, device_, journal_, unused};
   return journal_.time("probe method", [&] {
@@ -373,7 +365,9 @@ Result Compositor::painted(const Request& request, double holdTo) {
   result.layers.insert(result.layers.end(), run.lighting->shadows.layers.begin(), run.lighting->shadows.layers.end());
   if (!unseen.empty()) result.layers.push_back(unseenLayer(std::move(unseen)));
   if (asks(request.layers, LayerName::edges))
-    result.layers.push_back(edgesLayer(gbuffer, run.plan.edges ? &edges(run.plan) : nullptr));
+    result.layers.push_back(
+        edgesLayer(gbuffer, run.plan.edges ? &depth_.edges(shot_->opaque.gbuffer, shot_->camera, gbuffer.data, journal_)
+                                           : nullptr));
   if (wantsPlanes(request.layers)) {
     RunCounts unused;
     const Plan sums = sumsPlanOf(run.plan, facts_);
@@ -407,11 +401,11 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
   RunCounts counts;
   Plan sums = sumsPlanOf(run.plan, facts_);
   sums.heldOut = run.plan.heldOut;
-  const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan);
+  const std::unique_ptr<EdgePasses> edges = edgePasses(run.plan, run.lighting->picture.gbuffer->data);
   const Camera taken = shot_->camera;
   PassMotion motion(request, run.plan, run.lens, *shot_, triangles(), device_);
-  PassPicture moving(run.lighting->picture, depthPlanes(run.plan), edges.get(), triangles(), shot_->camera,
-                     gbuffer.data);
+  PassPicture moving(run.lighting->picture, depthPlanes(run.plan, run.lighting->picture.gbuffer->data), edges.get(),
+                     triangles(), shot_->camera, gbuffer.data);
   bool shows = false;
   for (int i = 0; i < run.plan.passes; ++i) {
     PassSettings sample = samplePass(run.pass, run.plan, i);

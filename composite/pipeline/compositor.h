@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "composite/edges.h"
 #include "composite/pipeline/kept_work.h"
 #include "composite/pipeline/lighting.h"
 #include "composite/pipeline/painter.h"
+#include "composite/pipeline/picture_depth.h"
 #include "composite/pipeline/plan.h"
 #include "composite/pipeline/result.h"
 #include "composite/pipeline/validate.h"
@@ -71,9 +71,10 @@ class Compositor {
   const Lighting& lightOf(const Request& request);
   TransparentPass* triangles();
   // Of the picture's depth, for passes away from pixel centres; null for a deep picture, whose samples have no planes.
-  const DepthPlanes* depthPlanes(const Plan& plan);
-  const std::vector<EdgePixel>& edges(const Plan& plan);     // of the picture
-  std::unique_ptr<EdgePasses> edgePasses(const Plan& plan);  // null where the plan takes no edge apart
+  //   area  of the passes, display coordinates
+  const DepthPlanes* depthPlanes(const Plan& plan, const Window& area);
+  // Null where the plan takes no edge apart.
+  std::unique_ptr<EdgePasses> edgePasses(const Plan& plan, const Window& area);
   Run prepare(const Request& request);
   // By one method.
   //   holdTo  tolerance to measure the picture by; 0: none
@@ -95,8 +96,7 @@ class Compositor {
   mutable bool knowsDepths_ = false;
   std::unique_ptr<TransparentPass> triangles_;
   bool placed_ = true;  // false as long as an earlier frame's stand as that frame had them
-  std::unique_ptr<DepthPlanes> depthPlanes_;
-  std::optional<std::vector<EdgePixel>> edges_;
+  PictureDepth depth_;
   // The light of the last request; requests that differ in nothing that lights share it.
   std::unique_ptr<Lighting> lighting_;
   Request lit_;

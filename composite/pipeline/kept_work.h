@@ -2,14 +2,11 @@
 // and on the device; a picture that serves several frames, with what is known of its depth and its edges.
 #pragma once
 #include <memory>
-#include <optional>
-#include <vector>
 
-#include "composite/edges.h"
 #include "composite/pipeline/device.h"
+#include "composite/pipeline/picture_depth.h"
 #include "composite/pipeline/shot.h"
 #include "engine_bridge/gl/transparent_pass.h"
-#include "gbuffer/depth_plane.h"
 
 namespace pellucid {
 
@@ -25,8 +22,7 @@ struct KeptWork {
   void forget() {
     const Device::Turn turn(device);
     triangles.reset();
-    edges.reset();
-    depthPlanes.reset();
+    depth = PictureDepth();
     shot.reset();
   }
 
@@ -34,8 +30,7 @@ struct KeptWork {
   // Of the frame before, where it was finished; the others are of this shot.
   std::unique_ptr<Shot> shot;
   std::unique_ptr<TransparentPass> triangles;
-  std::unique_ptr<DepthPlanes> depthPlanes;
-  std::optional<std::vector<EdgePixel>> edges;
+  PictureDepth depth;
 };
 
 }  // namespace pellucid

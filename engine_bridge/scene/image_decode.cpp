@@ -11,6 +11,7 @@
 #include "gbuffer/colour_space.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/image_codec.h"
+#include "gbuffer/plain_png.h"
 
 namespace pellucid::gltf {
 
@@ -60,6 +61,7 @@ float decodeSrgb(float encoded, bool eightBit) {
 
 StoredImage readImage(const std::vector<std::uint8_t>& bytes, const std::string& format, const std::string& whose) {
   StoredImage image;
+  if (readPlainPng(bytes, image)) return image;
   const std::string problem = imageCodec().read(bytes, format, image);
   if (!problem.empty()) throw InputError(printable(whose + " " + problem));
   return image;

@@ -30,6 +30,10 @@ class Bounds {
     most_ = glm::max(most_, place + around * half);
     return true;
   }
+  // Whether all of a triangle lies behind the eye. Points are turned about theirs, which leaves their depth.
+  bool unseen(const glm::dvec3 (&corners)[3]) const {
+    return !camera_.orthographic && -corners[0].z < kClipNear && -corners[1].z < kClipNear && -corners[2].z < kClipNear;
+  }
   Window within(const Window& data) const {
     const auto clamped = [](double value, int low, int high) {
       return static_cast<int>(std::clamp(value, static_cast<double>(low), static_cast<double>(high)));
@@ -70,12 +74,19 @@ Window screenBounds(const Scene& scene, const Camera& camera, const GBuffer& gbu
     const double scale = static_cast<double>(placed[i].thicknessScale) * static_cast<double>(material.pointScale);
     for (std::size_t first = 0; first < primitive.triangles(); first += kBatch) {
       readTriangles(primitive, first, std::min(kBatch, primitive.triangles() - first), places, batch);
-      for (const Vertex& vertex : batch.vertices) {
-        const glm::dvec4 pView = placed[i].viewFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0);
-        const double reach = primitive.points
-                                 ? scale * static_cast<double>(vertex.uv[1].x) * glm::length(glm::dvec2(vertex.uv[0]))
-                                 : 0.0;
-        if (!bounds.add(glm::dvec3(pView), reach)) return gbuffer.data;
+      for (std::size_t k = 0; k < batch.indices.size(); k += 3) {
+        glm::dvec3 corners[3];
+        double reach[3];
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Vertex& vertex = batch.vertices[batch.indices[k + c]];
+          corners[c] = glm::dvec3(placed[i].viewFromObject * glm::dvec4(glm::dvec3(vertex.position), 1.0));
+          reach[c] = primitive.points
+                         ? scale * static_cast<double>(vertex.uv[1].x) * glm::length(glm::dvec2(vertex.uv[0]))
+                         : 0.0;
+        }
+        if (bounds.unseen(corners)) continue;
+        for (int c = 0; c < 3; ++c)
+          if (!bounds.add(corners[c], reach[c])) return gbuffer.data;
       }
     }
   }

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <tuple>
 
 #include "composite/antialias.h"
 #include "composite/edges.h"
 #include "composite/methods/stochastic.h"
 #include "composite/resolve.h"
+#include "tests/support/random.h"
 
 namespace pellucid {
 namespace {
@@ -309,6 +311,66 @@ TEST(Edges, WhereSurfacesMeetTheNearerIsSeen) {
               left, worst);
   EXPECT_GT(left, 0);
   EXPECT_LT(worst, 1e-3);
+}
+
+// Balls of all sizes before a wall, filtered, with noise in depth and colour.
+GBuffer crowd(test::Random& random, int size) {
+  GBuffer gbuffer;
+  gbuffer.display = gbuffer.data = {0, 0, size, size};
+  gbuffer.depthPrecision = 0x1p-12f;
+  gbuffer.beauty = Image<glm::vec4>(size, size, glm::vec4(0.1f, 0.2f, 0.9f, 1.0f));
+  gbuffer.viewZ = Image<float>(size, size, 9.0f);
+  for (int i = 0; i < 60; ++i) {
+    const double cx = random.between(0, size), cy = random.between(0, size), radius = random.between(1, 12);
+    const double z = random.between(2, 7);
+    const glm::vec4 colour(random.uniformf(), random.uniformf(), random.uniformf(), 1.0f);
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const double away = std::hypot(x + 0.5 - cx, y + 0.5 - cy);
+        glm::vec4& seen = gbuffer.beauty.at(x, y);
+        seen = glm::mix(seen, colour, static_cast<float>(std::clamp(radius - away + 0.5, 0.0, 1.0)));
+        if (away < radius)
+          gbuffer.viewZ.at(x, y) = static_cast<float>(z - 0.1 * std::sqrt(radius * radius - away * away));
+      }
+  }
+  return gbuffer;
+}
+
+// Passes over a part of a picture ask about its edges alone.
+TEST(Edges, ThoseOfAPartAreThoseOfThePicture) {
+  constexpr int kLarge = 120;
+  test::Random random(47);
+  std::size_t found = 0;
+  for (int round = 0; round < 6; ++round) {
+    const GBuffer gbuffer = crowd(random, kLarge);
+    const std::vector<EdgePixel> all = edgePixels(gbuffer, DepthPlanes(gbuffer, Camera()));
+    for (const Window& part : {Window{40, 50, 80, 70}, Window{0, 0, 33, 21}, Window{90, 60, kLarge, kLarge}}) {
+      const int around = kEdgeSurroundings;
+      const DepthPlanes planes(gbuffer, Camera(),
+                               {std::max(part.x0 - around, 0), std::max(part.y0 - around, 0),
+                                std::min(part.x1 + around, kLarge), std::min(part.y1 + around, kLarge)});
+      auto next = all.begin();
+      for (const EdgePixel& edge : edgePixels(gbuffer, planes, part)) {
+        const auto outside = [&](const EdgePixel& one) {
+          return one.x < part.x0 || one.y < part.y0 || one.x >= part.x1 || one.y >= part.y1;
+        };
+        next = std::find_if_not(next, all.end(), outside);
+        ASSERT_NE(next, all.end());
+        EXPECT_EQ(std::tie(edge.x, edge.y, edge.share, edge.nearer.plane.across, edge.farther.plane.down,
+                           edge.farther.plane.centre),
+                  std::tie(next->x, next->y, next->share, next->nearer.plane.across, next->farther.plane.down,
+                           next->farther.plane.centre));
+        EXPECT_EQ(edge.nearerPart, next->nearerPart);
+        EXPECT_EQ(edge.towardsNearer, next->towardsNearer);
+        ++next;
+        ++found;
+      }
+      EXPECT_TRUE(std::all_of(next, all.end(), [&](const EdgePixel& one) {
+        return one.x < part.x0 || one.y < part.y0 || one.x >= part.x1 || one.y >= part.y1;
+      }));
+    }
+  }
+  EXPECT_GT(found, 1000u);
 }
 
 // What is not filtered has nothing to take apart, and neither has a colour that is no mixture of its neighbours'.

@@ -120,6 +120,9 @@ TEST(PassArea, BehindTheEyeNothingIsBounded) {
   EXPECT_LT(screenBounds(stage.scene, stage.camera, stage.gbuffer).width(), 20);
   stage.scene.primitives[0].vertices[0].position.z = 1.0f;
   EXPECT_EQ(screenBounds(stage.scene, stage.camera, stage.gbuffer), stage.gbuffer.data);
+  // What lies there altogether is never seen.
+  for (Vertex& vertex : stage.scene.primitives[0].vertices) vertex.position.z = 1.0f;
+  EXPECT_EQ(screenBounds(stage.scene, stage.camera, stage.gbuffer).width(), 1);
 }
 
 }  // namespace

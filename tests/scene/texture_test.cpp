@@ -4,8 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
+#include "gbuffer/image_codec.h"
+#include "gbuffer/plain_png.h"
 #include "tests/scene/gltf_builder.h"
+#include "tests/support/random.h"
 
 namespace pellucid::test {
 namespace {
@@ -39,6 +43,38 @@ std::vector<std::uint8_t> redPng() {
 // Written from IEC 61966-2-1, apart from the code under test.
 double srgb(double e) {
   return e <= 0.04045 ? e / 12.92 : std::pow((e + 0.055) / 1.055, 2.4);
+}
+
+// Textures mostly are plain PNGs, which are read without the codec of all images: the same numbers.
+TEST(Textures, PlainPngsAreReadAsTheCodecReadsThem) {
+  Random random(46);
+  for (const int channels : {1, 3, 4})
+    for (const int width : {1, 7, 64, 301}) {
+      std::vector<std::uint8_t> pixels;
+      for (int i = 0; i < width * 50 * channels; ++i)  // smooth here, noise there: rows of every filter
+        pixels.push_back(
+            static_cast<std::uint8_t>(i % 3000 < 1500 ? i / 7 : static_cast<int>(255.0 * random.uniform())));
+      const std::vector<std::uint8_t> png = encode("png", width, 50, channels, OIIO::TypeDesc::UINT8, pixels);
+      StoredImage plain, other;
+      ASSERT_TRUE(readPlainPng(png, plain)) << channels;
+      ASSERT_EQ(imageCodec().read(png, "png", other), "");
+      EXPECT_EQ(plain.values, other.values);
+      EXPECT_EQ(std::tie(plain.width, plain.height, plain.channels),
+                std::tie(other.width, other.height, other.channels));
+      EXPECT_TRUE(plain.eightBit && !plain.floats && !plain.chromaticities);
+      for (int damage = 0; damage < 40; ++damage) {  // no damage passes
+        std::vector<std::uint8_t> broken = png;
+        const auto place = static_cast<std::size_t>(random.uniform() * static_cast<double>(png.size()));
+        broken[place] = static_cast<std::uint8_t>(broken[place] ^ (1 << damage % 8));
+        EXPECT_FALSE(readPlainPng(broken, plain)) << place;
+        broken.resize(place);
+        EXPECT_FALSE(readPlainPng(broken, plain)) << place;
+      }
+    }
+  const std::vector<std::uint16_t> deep(12, 77);
+  StoredImage image;
+  EXPECT_FALSE(readPlainPng(encode("png", 2, 2, 3, OIIO::TypeDesc::UINT16, deep), image));
+  EXPECT_FALSE(readPlainPng({}, image));
 }
 
 TEST(Textures, ColourIsDecodedAndAlphaStaysStraight) {

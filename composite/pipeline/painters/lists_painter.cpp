@@ -22,12 +22,6 @@ void Mixer::mixLean(const LeanLists& lists, const Window& data, Veil& veil) {
 
 namespace {
 
-bool anySolid(const FragmentLists& lists) {
-  for (std::size_t i = 0; i < lists.solid.size(); ++i)
-    if (std::isfinite(lists.solid[i].a)) return true;
-  return false;
-}
-
 class ListsPainter : public Painter {
  public:
   ListsPainter(const PaintContext& context, std::unique_ptr<Mixer> mixer)
@@ -117,15 +111,15 @@ class ListsPainter : public Painter {
       foldExact(given, sample.weight, sample.normalisation, planes_);
     else if (scatters_)
       foldScattering(given, planes_);
-    if (!context_.plan.isExact() && !(scatters_ && (given.disperses() || anySolid(given)))) {
+    if (!context_.plan.isExact() && !(scatters_ && (given.disperses() || hidesSolids(given, planes_)))) {
       mix(sample, pass, given, veil);
       return;
     }
-    FragmentLists shown = given;
-    if (scatters_) hideSolids(shown, planes_);
-    shown.dispersion.clear();  // it is in the planes
-    if (context_.plan.isExact()) orderByDepthAndBits(shown);
-    mix(sample, pass, shown, veil);
+    shown_ = given;
+    if (scatters_) hideSolids(shown_, planes_);
+    shown_.dispersion.clear();  // it is in the planes
+    if (context_.plan.isExact()) orderByDepthAndBits(shown_);
+    mix(sample, pass, shown_, veil);
   }
 
   void mix(const PassSettings& sample, int pass, const FragmentLists& lists, Veil& veil) {
@@ -161,6 +155,7 @@ class ListsPainter : public Painter {
   Window area_;
   bool scatters_ = false, anyScatters_ = false;  // may be, is
   OitPlanes planes_;                             // what scatters
+  FragmentLists shown_;                          // of a window, where it is not shown as it is listed
   PassBackdrop backdrops_;
   Image<glm::vec3> lookedUp_;  // with a deep picture behind
   std::optional<LowResolutionFragments> low_;
