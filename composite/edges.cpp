@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "composite/object_shares.h"
 #include "composite/surface_sides.h"
 #include "gbuffer/finite_colour.h"
 
@@ -46,8 +47,9 @@ class Finder {
   };
   struct Mixture {
     glm::dvec4 nearer, farther;
-    double share;  // of the nearer, [0,1]
-    double off;    // how far the pixel's colour lies from it, as a part of the line's length
+    double share;            // of the nearer, [0,1]
+    double off;              // how far the pixel's colour lies from it, as a part of the line's length
+    bool byObjects = false;  // the share is that of objects the file tells apart
   };
   struct Beside {
     Side other = Side::own;  // own: none of the neighbours lies there
@@ -64,6 +66,8 @@ class Finder {
   std::optional<Colours> coloursOf(int x, int y, Side other) const;
   std::optional<PlaneNear> planeOf(int x, int y, Side side) const;
   static void setPlanes(const PlaneNear& own, const PlaneNear& beside, Side other, EdgePixel& edge);
+  std::optional<Mixture> mixtureAt(int x, int y, Side other) const;
+  static bool leavesOwn(Side other, Mixture& mixture);
   std::optional<EdgePixel> edgeAt(int x, int y) const;
   std::optional<EdgePixel> edgeBeside(int x, int y, Side other, bool mostlyOwn) const;
 
@@ -253,24 +257,40 @@ std::optional<EdgePixel> Finder::edgeAt(int x, int y) const {
   return std::nullopt;
 }
 
+// Of the colours on both sides; where they do not tell, of the share that is known otherwise, if any.
+std::optional<Finder::Mixture> Finder::mixtureAt(int x, int y, Side other) const {
+  const std::optional<Colours> colours = coloursOf(x, y, other);
+  if (!colours) return std::nullopt;
+  std::optional<Mixture> mixture = mixtureOf(glm::dvec4(gbuffer_.beauty.at(x, y)), *colours);
+  if (mixture) return mixture;
+  const std::optional<double> share = nearerShare(gbuffer_, sides_, x, y, other);
+  if (!share) return std::nullopt;
+  return Mixture{colours->nearer.nearest, colours->farther.nearest, *share, 0.0, true};
+}
+
+// A straight edge leaves at least half of the pixel to the surface at its centre; with much less of it colours were
+// taken from where they do not belong.
+bool Finder::leavesOwn(Side other, Mixture& mixture) {
+  const double own = other == Side::nearer ? 1.0 - mixture.share : mixture.share;
+  if (own < kLeastOwn) return false;
+  if (own < 0.5) mixture.share = 0.5;
+  return true;
+}
+
 std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostlyOwn) const {
   const glm::dvec4 colour(gbuffer_.beauty.at(x, y));
-  const std::optional<Colours> colours = coloursOf(x, y, other);
-  std::optional<Mixture> mixture = colours ? mixtureOf(colour, *colours) : std::nullopt;
+  std::optional<Mixture> mixture = mixtureAt(x, y, other);
   if (!mixture) return std::nullopt;
   const std::optional<PlaneNear> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
   if (!own || !beside) return std::nullopt;
   if (std::isinf((other == Side::nearer ? own : beside)->plane.centre)) readAlpha(colour.a, *mixture);
+  if (!mixture->byObjects && mostlyOwn && !leavesOwn(other, *mixture)) return std::nullopt;
+  const double least = std::max(kPure, kTold * mixture->off);
+  if (!(mixture->share > least && mixture->share < 1.0 - least)) return std::nullopt;
   EdgePixel edge;
   edge.x = x;
   edge.y = y;
   edge.share = mixture->share;
-  // A straight edge leaves at least half of the pixel to the surface at its centre; with much less of it colours were
-  // taken from where they do not belong.
-  if (mostlyOwn && (other == Side::nearer ? 1.0 - edge.share : edge.share) < kLeastOwn) return std::nullopt;
-  if (mostlyOwn) edge.share = other == Side::nearer ? std::min(edge.share, 0.5) : std::max(edge.share, 0.5);
-  const double least = std::max(kPure, kTold * mixture->off);
-  if (!(edge.share > least && edge.share < 1.0 - least)) return std::nullopt;
   setPlanes(*own, *beside, other, edge);
   edge.towardsNearer = directionOf(x, y, other);
   takeApart(colour, mixture->nearer, mixture->farther, edge);

@@ -1,12 +1,15 @@
 // The opaque picture that transparency is composited onto, understood: one beauty, one depth, one camera.
 #pragma once
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 
 #include "gbuffer/camera.h"
 #include "gbuffer/image.h"
 
 namespace pellucid {
+
+class ObjectCoverage;  // gbuffer/object_coverage.h
 
 // All planes have the size of `data`.
 struct GBuffer {
@@ -19,6 +22,7 @@ struct GBuffer {
   Image<glm::vec3> normal;       // world, unit; empty when the file has none
   Image<float> occlusion;        // ambient occlusion, [0,1], 1 = open; empty when the file has none
   std::optional<Camera> camera;  // from the file's attributes
+  std::shared_ptr<const ObjectCoverage> objects;  // null when the file has none
 };
 
 }  // namespace pellucid

@@ -6,6 +6,7 @@
 #include "gbuffer/channels.h"
 #include "gbuffer/depth.h"
 #include "gbuffer/errors.h"
+#include "gbuffer/object_coverage.h"
 #include "gbuffer/opaque_io.h"
 #include "gbuffer/part_camera.h"
 #include "gbuffer/pixel_rows.h"
@@ -244,6 +245,7 @@ OpaqueFile interpretOpaque(ExrDocument document, const ReadOptions& options, con
   convertDepth(depthPart, *depth.channel, kindOf(options, producer, all, depth), !options.depthKind.empty(), producer,
                options.farValue, camera, file);
   readOtherPasses(all, beauty, producer, file);
+  gbuffer.objects = ObjectCoverage::of(file.document, channels, beauty.view, gbuffer.data);
   return file;
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gbuffer/depth_kind.h"
+#include "gbuffer/object_coverage.h"
 #include "gbuffer/opaque_io.h"
 
 namespace pellucid {
@@ -96,7 +97,11 @@ std::vector<std::string> understoodLines(const OpaqueFile& file) {
   if (!file.choice.preset.empty())
     picture += fmt::format(", preset {} by {}", file.choice.preset, file.choice.presetBy);
   picture += ", colours in " + spaceText(file.space);
-  return {picture, depthLine(file)};
+  std::vector<std::string> lines = {picture, depthLine(file)};
+  if (file.gbuffer.objects)
+    lines.push_back(fmt::format("edges: where colours do not tell how much of a pixel is whose, Cryptomatte {} does",
+                                file.gbuffer.objects->layer()));
+  return lines;
 }
 
 }  // namespace pellucid

@@ -14,6 +14,8 @@
 #include "composite/edges.h"
 #include "composite/methods/stochastic.h"
 #include "composite/resolve.h"
+#include "gbuffer/opaque_io.h"
+#include "tests/support/program.h"
 #include "tests/support/random.h"
 
 namespace pellucid {
@@ -371,6 +373,44 @@ TEST(Edges, ThoseOfAPartAreThoseOfThePicture) {
     }
   }
   EXPECT_GT(found, 1000u);
+}
+
+// A front and a back of one colour: nothing but Cryptomatte tells how much of a pixel either has.
+TEST(Edges, ObjectsTellWhatColoursDoNot) {
+  const Window all{0, 0, kSize, kSize};
+  const std::string path = test::freshFolder("edge-objects") + "/p.exr";
+  for (const Scene& scene : kScenes)
+    for (const bool objects : {false, true}) {
+      const GBuffer drawn = scene.picture();
+      const Image<float> grey(kSize, kSize, 0.5f), one(kSize, kSize, 1.0f);
+      Image<float> id[2] = {grey, grey}, part[2] = {grey, grey};
+      for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+          const double front = scene.share(x, y);
+          const bool most = front >= 0.5;  // the larger part comes first
+          for (const int k : {0, 1}) {
+            const bool isFront = (k == 0) == most;
+            part[k].at(x, y) = static_cast<float>(isFront ? front : 1.0 - front);
+            id[k].at(x, y) = isFront ? 3.25f : -1.75f;
+          }
+        }
+      std::vector<ExtraLayer> layers = {{"", {{"R", grey}, {"G", grey}, {"B", grey}, {"A", one}, {"Z", drawn.viewZ}}}};
+      if (objects) layers.push_back({"crypto_object00", {{"R", id[0]}, {"G", part[0]}, {"B", id[1]}, {"A", part[1]}}});
+      writeLayers(path, all, all, layers, {{"cryptomatte/0123456/name", "crypto_object"}});
+      const GBuffer gbuffer = readOpaque(path, {}).gbuffer;
+      std::size_t inside = 0, mixed = 0;
+      for (const EdgePixel& edge : edgePixels(gbuffer, DepthPlanes(gbuffer, Camera()))) {
+        if (atBorder(edge.x, edge.y)) continue;
+        ++inside;
+        EXPECT_NEAR(edge.share, scene.share(edge.x, edge.y), 1e-6);
+      }
+      for (int y = 1; y < kSize - 1; ++y)
+        for (int x = 1; x < kSize - 1; ++x) {
+          const double f = scene.share(x, y);
+          mixed += f > 0.0 && f < 1.0 ? 1 : 0;
+        }
+      EXPECT_EQ(inside, objects ? mixed : 0u);
+    }
 }
 
 // What is not filtered has nothing to take apart, and neither has a colour that is no mixture of its neighbours'.
