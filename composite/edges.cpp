@@ -205,7 +205,8 @@ void Finder::setPlanes(const PlaneNear& own, const PlaneNear& beside, Side other
   edge.farther = other == Side::nearer ? own : beside;
   const glm::dvec2 there = beside.from;
   edge.meet = own.z(0.0, 0.0) < beside.z(0.0, 0.0) && beside.z(there.x, there.y) < own.z(there.x, there.y);
-  if (edge.meet || std::isfinite(beside.z(0.0, 0.0))) return;
+  const double besideZ = beside.z(0.0, 0.0);
+  if (edge.meet || (std::isfinite(besideZ) && besideZ > kAtEye)) return;
   (other == Side::nearer ? edge.nearer : edge.farther).plane = {beside.plane.centre, 0.0, 0.0,
                                                                 beside.plane.orthographic};
 }

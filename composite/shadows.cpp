@@ -31,7 +31,7 @@ Image<glm::vec3> mappedVisibility(const ShadowMaps& maps, std::size_t light, con
       for (int i = 0; i < samples; ++i) {
         glm::dvec2 offset = samplePosition(i, samples) - 0.5;
         double depth = plane.z(offset.x, offset.y);
-        if (!std::isfinite(depth)) {
+        if (!std::isfinite(depth) || depth <= kAtEye) {
           offset = glm::dvec2(0.0);
           depth = static_cast<double>(z);
         }

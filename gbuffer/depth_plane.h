@@ -9,15 +9,18 @@
 
 namespace pellucid {
 
+constexpr double kAtEye = 1e-30;  // metres: nearer than anything, and not 0
+
 // In a picture 1/z is linear on a plane; where the camera is orthographic, z is.
 struct DepthPlane {
   double centre = 0;            // z at the pixel's centre, planar metres
   double across = 0, down = 0;  // change per pixel of what is linear, as a part of its value at the centre
   bool orthographic = false;
-  // At an offset from the pixel's centre, in pixels; +inf where the plane has left the picture.
+  // At an offset from the pixel's centre, in pixels. Where the plane has left the picture: +inf beyond its horizon,
+  // kAtEye where parallel rays meet it behind the eye.
   double z(double x, double y) const {
     const double linear = 1.0 + across * x + down * y;
-    if (!(linear > 0.0)) return std::numeric_limits<double>::infinity();
+    if (!(linear > 0.0)) return orthographic ? kAtEye : std::numeric_limits<double>::infinity();
     return orthographic ? centre * linear : centre / linear;
   }
 };

@@ -36,6 +36,7 @@ TEST(Pictures, ThoseThatWereWrongAreRight) {
            Trial{"glass", 102869},    // a pixel that shows a third surface lent its colour to an edge of two
            Trial{"glass", 101319},    // a whole pixel was taken apart by colours continued from another face
            Trial{"shapes", 101603},   // the same
+           Trial{"contact", 103261},  // past a surface that parallel rays meet behind the eye everything was seen
            Trial{"decals", 103790},   // a decal on a floor that parallel rays see up to the eye's plane
        })
     expectRight(trial, runTrial(trial, folder, kept), folder);
