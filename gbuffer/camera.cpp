@@ -49,6 +49,7 @@ struct Lens {
   bool orthographic = false;
   glm::dvec2 scale{}, shift{};  // ndc = scale * (x, y) / z + shift
   double divisor = 0;           // of the projection: 1 or -1 in what renderers write
+  double leaning = 0;           // of depth: what x and y add to it, over the divisor
 };
 
 // ndcFromCamera must be one of
@@ -69,6 +70,7 @@ std::optional<Lens> lensOf(const glm::dmat4& ndcFromCamera, double slack, std::s
     found = "a projection that is not along worldToCamera's z axis";
   } else {
     lens.scale = glm::dvec2(x.x, y.y) / lens.divisor;
+    lens.leaning = glm::length(glm::dvec2(glm::row(ndcFromCamera, 2))) / std::abs(lens.divisor);
     lens.shift = glm::dvec2(lens.orthographic ? x.w : x.z, lens.orthographic ? y.w : y.z) / lens.divisor;
     // Seen along -z, x over z changes its sign; the caller has turned such spaces round.
     if (lens.divisor < 0 && !lens.orthographic)
@@ -165,13 +167,18 @@ Camera cameraFromExr(const glm::dmat4& worldToCameraRows, const glm::dmat4& worl
   };
   if (!allFinite(worldToCameraRows) || !allFinite(worldToNdcRows)) refuse("a number that is not finite", "a camera");
   // A GLM column holds what EXR calls a row, so as read they are the column-vector form. pbrt stores the transpose,
-  // which near the origin looks like a camera too: the better one has a projection that divides by z itself.
+  // which near the origin looks like a camera too. Transposing puts the principal point where depth is made, so the
+  // better one has depth that x and y do not change, and then a projection that divides by z itself.
   std::string found[2];
   std::optional<Reading> best;
   for (const bool transposed : {false, true}) {
     const auto reading = readAs(worldToCameraRows, worldToNdcRows, transposed, found[transposed]);
     const auto off = [](const Reading& one) { return std::abs(std::abs(one.lens.divisor) - 1.0); };
-    if (reading && (!best || off(*reading) < off(*best) - 1e-6)) best = reading;
+    const auto better = [&](const Reading& one, const Reading& other) {
+      const double apart = one.lens.leaning - other.lens.leaning;
+      return std::abs(apart) > 1e-6 ? apart < 0 : off(one) < off(other) - 1e-6;
+    };
+    if (reading && (!best || better(*reading, *best))) best = reading;
   }
   if (!best)
     refuse(found[0] == "a projection" ? found[1] : found[0], "a rotation, a translation and a projection along z");

@@ -323,6 +323,10 @@ bool isPassName(const std::string& name) {
          (name.starts_with("light.") && name.size() > 6);
 }
 
+bool saysData(const std::string& layer) {
+  return !layer.empty() && beautyRank({lowerCase(split(layer).back())}) == 3;
+}
+
 std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channels, const BeautyChannels& beauty,
                                         Pass pass) {
   const auto named = [&](const std::string& word) { return means(pass, word); };

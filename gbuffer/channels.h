@@ -70,6 +70,9 @@ std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channel
 // Whether a name says such a pass, or one light's part of the picture: "N", "AO", "light.key".
 bool isPassName(const std::string& name);
 
+// Whether a layer's name says that its R, G and B are no colours: "N", "VRayZDepth", "ViewLayer.CryptoObject00".
+bool saysData(const std::string& layer);
+
 // "R, G, B and 30 more"
 std::string listNames(const std::vector<NamedChannel>& channels, std::size_t most = 40);
 

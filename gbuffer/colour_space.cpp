@@ -189,6 +189,11 @@ ColourSpace statedSpace(const ExrPart& part, const std::string& preset, std::vec
     }
     notes.push_back(fmt::format("attribute chromaticities: found {}, which span no colours, so they are not taken",
                                 primariesText(*stated)));
+  } else if (const auto found = part.attributes.find("chromaticities"); found != part.attributes.end()) {
+    notes.push_back(
+        fmt::format("attribute chromaticities: found {} of {} bytes, expected 8 numbers of the type "
+                    "chromaticities, so they are not taken",
+                    found->second.type, found->second.bytes.size()));
   }
   const NamedSpace* row = namedSpace(preset);
   ColourSpace space = spaceOf(row ? *row : namedSpaces()[0]);

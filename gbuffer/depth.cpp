@@ -53,11 +53,7 @@ struct Reader {
   void note(const std::string& sentence) const { file.notes.push_back("depth " + depth.name + " " + sentence); }
 
   DepthKind settle(const DepthKind& asked) const {
-    if (evidence.negative > 0 && evidence.positive == 0) {
-      note(fmt::format("is negative, {:.6g} to {:.6g}: read as minus planar depth; --depth-kind says otherwise",
-                       evidence.least, evidence.most));
-      return {DepthMeaning::negative};
-    }
+    if (evidence.negative > 0 && evidence.positive == 0) return belowZero(asked);
     const bool ramp = evidence.positive > 0 && evidence.negative == 0 && evidence.most <= 1.0;
     if (ramp && producer && producer->mayBeRamp)
       throw MeaningError(
@@ -74,7 +70,39 @@ struct Reader {
       if (other != asked.meaning && asked.meaning <= DepthMeaning::inverse && speaksFor(evidence, other, asked.meaning))
         note(fmt::format("is read as {}, but {}: --depth-kind {}?{}", depthKindWords(asked),
                          evidenceText(evidence, other, asked.meaning), depthKindText({other}), unlessParallel(other)));
+    if (!producer && asked.meaning == DepthMeaning::planar) noteUntold();
     return asked;
+  }
+  // Noise and curved things hide that depth is measured along rays.
+  void noteUntold() const {
+    const bool rays = camera && !camera->orthographic && evidence.positive > 0;
+    if (rays && !speaksFor(evidence, DepthMeaning::planar, DepthMeaning::ray) &&
+        !speaksFor(evidence, DepthMeaning::ray, DepthMeaning::planar))
+      note(
+          "is read as planar depth, which the planes of the picture do not tell from distance along the ray: if it is "
+          "that, give --depth-kind ray");
+  }
+  // All numbers are below 0: minus planar depth, unless the planes fit minus another reading.
+  DepthKind belowZero(const DepthKind& asked) const {
+    DepthKind kind{DepthMeaning::negative};
+    for (const DepthMeaning other : {DepthMeaning::ray, DepthMeaning::inverse}) {
+      if (!speaksFor(evidence, other, DepthMeaning::planar)) continue;
+      const DepthKind minus{.meaning = other, .negated = true};
+      if (asked.meaning != DepthMeaning::evidence || !asked.mayBe(other))
+        throw MeaningError(fmt::format(
+            "{} is negative, {:.6g} to {:.6g}, and {}: expected --depth-kind {}, or negative", place(), evidence.least,
+            evidence.most, evidenceText(evidence, other, DepthMeaning::planar), depthKindText(minus)));
+      kind = minus;
+    }
+    if (kind.meaning == DepthMeaning::negative && asked.mayBe(DepthMeaning::inverse) &&
+        !speaksFor(evidence, DepthMeaning::planar, DepthMeaning::inverse))
+      throw MeaningError(
+          fmt::format("{} is negative, {:.6g} to {:.6g}, and {} may have written minus depth or -1/z: the planes of "
+                      "the picture do not tell, expected --depth-kind negative or inverse:negative",
+                      place(), evidence.least, evidence.most, writer()));
+    note(fmt::format("is negative, {:.6g} to {:.6g}: read as {}; --depth-kind says otherwise", evidence.least,
+                     evidence.most, kind.negated ? depthKindWords(kind) : "minus planar depth"));
+    return kind;
   }
   // Planar depth of an orthographic camera looks like 1/z of another one.
   std::string unlessParallel(DepthMeaning suggested) const {

@@ -107,6 +107,8 @@ DepthEvidence depthEvidence(const ExrPart& part, const ExrChannel& depth, const 
   Patches patches{values, part, camera, toleranceOf(part, depth), {}};
   patches.evidence.parallel = camera && camera->orthographic;
   measureRange(values, patches.evidence);
+  if (patches.evidence.negative > 0 && patches.evidence.positive == 0)
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = -values[i];
   const int longer = std::max(width, height), every = std::max(1, longer / kAcross);
   // Short ones find small planes; long ones bend enough to be told apart.
   for (const int part64 : {1, 3, 6, 10}) {

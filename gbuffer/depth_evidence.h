@@ -1,6 +1,7 @@
 // Which reading of a depth channel the picture itself speaks for. Seen in perspective, 1 / planar depth is linear
 // across the picture of a plane; so is 1 / distance along the ray times the ray's length, and 1/z as it is stored. Seen
 // by an orthographic camera, planar depth itself is linear there, and distance along the ray is the same number.
+// Where all numbers are below 0, their sizes speak.
 #pragma once
 #include <cstddef>
 #include <optional>

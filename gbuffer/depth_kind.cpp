@@ -79,6 +79,10 @@ DepthKind parseDepthKind(const std::string& text) {
       kind.reversed = true;
       return kind;
     }
+    if (kind.mayBeNegated() && words.size() == 2 && words[1] == "negative") {
+      kind.negated = true;
+      return kind;
+    }
     if (kind.meaning != DepthMeaning::normalised) return words.size() == 1 ? kind : refuse();
     kind.inverted = words.size() == 4 && words[3] == "inverted";
     if (words.size() != 3 && !kind.inverted) return refuse();
@@ -92,8 +96,8 @@ DepthKind parseDepthKind(const std::string& text) {
 }
 
 std::string depthKindForms() {
-  return "planar, ray, inverse, device, device:reversed, negative, normalised:NEAR:FAR[:inverted] with 0 <= NEAR < FAR "
-         "in the file's unit, or auto";
+  return "planar, ray, inverse, device, device:reversed, negative, ray:negative, inverse:negative, "
+         "normalised:NEAR:FAR[:inverted] with 0 <= NEAR < FAR in the file's unit, or auto";
 }
 
 std::string depthKindText(const DepthKind& kind) {
@@ -105,11 +109,11 @@ std::string depthKindText(const DepthKind& kind) {
   }
   if (kind.meaning == DepthMeaning::normalised)
     return fmt::format("normalised:{:g}:{:g}{}", kind.rangeNear, kind.rangeFar, kind.inverted ? ":inverted" : "");
-  return std::string(nameOf(kind.meaning).name) + (kind.reversed ? ":reversed" : "");
+  return std::string(nameOf(kind.meaning).name) + (kind.reversed ? ":reversed" : kind.negated ? ":negative" : "");
 }
 
 std::string depthKindWords(const DepthKind& kind) {
-  return fmt::format("{} ({})", nameOf(kind.meaning).words, depthKindText(kind));
+  return fmt::format("{}{} ({})", kind.negated ? "minus " : "", nameOf(kind.meaning).words, depthKindText(kind));
 }
 
 bool needsCamera(const DepthKind& kind) {
@@ -143,6 +147,7 @@ DepthConverter::DepthConverter(const DepthKind& kind, PixelType type, std::optio
 }
 
 double DepthConverter::distance(double value, double x, double y) const {
+  if (kind_.negated) value = -value;
   switch (kind_.meaning) {
     case DepthMeaning::planar:
     case DepthMeaning::evidence:
@@ -167,11 +172,12 @@ double DepthConverter::distance(double value, double x, double y) const {
 double DepthConverter::operator()(double value, double x, double y) const {
   if (!std::isfinite(value)) return kNothing;
   const bool downwards = kind_.meaning == DepthMeaning::inverse || kind_.reversed || kind_.inverted;
+  const double size = kind_.negated ? -value : value;
   if (kind_.meaning == DepthMeaning::negative) {
     if (!(value < 0.0) || value <= -far_) return kNothing;
   } else if (kind_.meaning == DepthMeaning::normalised && !kind_.inverted) {
     if (!(value >= 0.0) || value >= far_) return kNothing;  // 0 is at NEAR
-  } else if (!(value > 0.0) || (downwards ? value <= far_ : value >= far_)) {
+  } else if (!(size > 0.0) || (downwards ? size <= far_ : size >= far_)) {
     return kNothing;
   }
   return distance(value, x, y);

@@ -23,15 +23,17 @@ struct DepthKind {
   DepthMeaning meaning = DepthMeaning::planar;
   bool reversed = false;               // of device: 1 is at the near plane
   bool inverted = false;               // of normalised: 1 is near
+  bool negated = false;                // of ray and inverse: minus that
   double rangeNear = 0, rangeFar = 1;  // of normalised, in the file's unit
   unsigned candidates = 0;             // of evidence: bit 1 << meaning of each
+  bool mayBeNegated() const { return meaning == DepthMeaning::ray || meaning == DepthMeaning::inverse; }
   bool mayBe(DepthMeaning one) const {
     return meaning == DepthMeaning::evidence ? ((candidates >> static_cast<int>(one)) & 1u) != 0 : meaning == one;
   }
 };
 
-// "planar", "normalised:0.5:40:inverted"; "auto" lets the picture choose, "planar|ray" among these. Throws UsageError
-// naming all forms.
+// "planar", "inverse:negative", "normalised:0.5:40:inverted"; "auto" lets the picture choose, "planar|ray" among these.
+// Throws UsageError naming all forms.
 DepthKind parseDepthKind(const std::string& text);
 std::string depthKindForms();                       // for help and messages
 std::string depthKindText(const DepthKind& kind);   // as --depth-kind takes it

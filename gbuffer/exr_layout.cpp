@@ -142,6 +142,10 @@ struct HeaderReader {
       if (xSampling != 1 || ySampling != 1)
         refuse(fmt::format("channel {}: found {} x {} sub-sampling{}, expected every pixel", name, xSampling, ySampling,
                            name == "RY" || name == "BY" ? " (luminance-chroma)" : ""));
+      // Pixels are read in the order of the names: in another, each channel would have another's values.
+      if (!part.channels.empty() && !(part.channels.back().name < name))
+        refuse(fmt::format("damaged header: found channel {} after {}, expected them in the order of their names", name,
+                           part.channels.back().name));
       part.channels.push_back({name, type});
       part.pixelBytes += kBytes[type];
     }

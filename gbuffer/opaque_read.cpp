@@ -21,15 +21,25 @@ const ExrPart& partOf(const OpaqueFile& file, int index) {
   return file.document.parts[static_cast<std::size_t>(index)];
 }
 
-std::optional<glm::dmat4> matrixOf(const ExrPart& part, const char* name) {
-  const auto found = part.attributes.find(name);
-  if (found == part.attributes.end() || found->second.type != "m44f" || found->second.bytes.size() != 64)
-    return std::nullopt;
-  float numbers[16];
-  std::memcpy(numbers, found->second.bytes.data(), sizeof numbers);
+template <class Number>
+glm::dmat4 matrixFrom(const std::string& bytes) {
+  Number numbers[16];
+  std::memcpy(numbers, bytes.data(), sizeof numbers);
   glm::dmat4 rows;
   for (int i = 0; i < 16; ++i) rows[i / 4][i % 4] = static_cast<double>(numbers[i]);
   return rows;
+}
+
+//   found  is told of an attribute that is no matrix
+std::optional<glm::dmat4> matrixOf(const ExrPart& part, const char* name, std::string& found) {
+  const auto attribute = part.attributes.find(name);
+  if (attribute == part.attributes.end()) return std::nullopt;
+  const auto& [type, bytes] = attribute->second;
+  if (type == "m44f" && bytes.size() == 64) return matrixFrom<float>(bytes);
+  if (type == "m44d" && bytes.size() == 128) return matrixFrom<double>(bytes);
+  found = fmt::format("attribute {}: found {} of {} bytes, expected m44f, so no camera from the file", name, type,
+                      bytes.size());
+  return std::nullopt;
 }
 
 double floatOf(const ExrPart& part, const char* name) {
@@ -181,8 +191,12 @@ void readPixelFilter(const ExrPart& part, const Producer* producer, OpaqueFile& 
 }  // namespace
 
 void readCamera(const ExrPart& part, double unit, OpaqueFile& file) {
-  const auto worldToCamera = matrixOf(part, "worldToCamera"), worldToNdc = matrixOf(part, "worldToNDC");
-  if (worldToCamera.has_value() != worldToNdc.has_value())
+  std::string strange;
+  const auto worldToCamera = matrixOf(part, "worldToCamera", strange),
+             worldToNdc = matrixOf(part, "worldToNDC", strange);
+  if (!strange.empty())
+    file.notes.push_back(file.cameraRefusal = strange);
+  else if (worldToCamera.has_value() != worldToNdc.has_value())
     file.notes.push_back(file.cameraRefusal =
                              fmt::format("found the attribute {} without {}, so no camera from the file",
                                          worldToCamera ? "worldToCamera" : "worldToNDC",

@@ -5,8 +5,8 @@
 
 namespace pellucid::cli {
 
-void ColourFlags::addConfigTo(CLI::App& verb) {
-  verb.add_option("--ocio", config, "Of --preview: OpenColorIO config; without it that of $OCIO, else a built-in one");
+void ColourFlags::addConfigTo(CLI::App& verb, const std::string& of) {
+  verb.add_option("--ocio", config, "Of " + of + ": OpenColorIO config; without it that of $OCIO, else a built-in one");
   verb.add_option("--asset-root", assetRoot, "Folder whose files a config may name besides those under its own folder");
 }
 

@@ -14,7 +14,8 @@ struct ColourFlags {
   //   help  of --working-space
   void addTo(CLI::App& verb, const std::string& help);
   // --ocio alone, for what is only shown, and the folder whose files it may name besides.
-  void addConfigTo(CLI::App& verb);
+  //   of  what is shown: "--preview"
+  void addConfigTo(CLI::App& verb, const std::string& of = "--preview");
   // The config is that of --ocio, else of $OCIO.
   ColourRequest request() const;
 };

@@ -28,6 +28,7 @@ nlohmann::json number(double value) {
 //   flicker  of the frames so far
 void compareVerb(const CompareFlags& flags, FrameRun& frame, TemporalError& flicker) {
   const CompareSettings settings = flags.settings();
+  flags.check();
   const ExrDocument a = readExr(flags.a), b = readExr(flags.b);
   const CompareReport report = compareExr(a, b, settings);
   if (frame.inSequence()) frame.summary = summaryOf(report, flicker.next(a, b, settings));
@@ -35,7 +36,7 @@ void compareVerb(const CompareFlags& flags, FrameRun& frame, TemporalError& flic
     fmt::print("{}\n", jsonOf(report).dump(2));
   else if (!frame.inSequence() || report.verdict != Verdict::same)
     fmt::print("{}", reportText(report, flags.a, flags.b));
-  if (!flags.html.empty()) writePage(flags.html, comparePage(a, b, report));
+  flags.writeHtml(a, b, report);
   if (report.verdict == Verdict::failed) throw Error(1, fmt::format("{} and {} differ", flags.a, flags.b));
 }
 
@@ -106,6 +107,14 @@ void CompareFlags::addTo(CLI::App& verb) {
   verb.add_flag("--finite", settings.finiteOnly, "Fail on NaN and infinity even where both files hold the same");
   verb.add_flag("--json", json, "Print the report as JSON");
   verb.add_option("--html", html, "Write a self-contained page that shows both pictures and their difference");
+  shown.addTo(verb, "--html");
+}
+
+void CompareFlags::writeHtml(const ExrDocument& one, const ExrDocument& other, const CompareReport& report) const {
+  if (html.empty()) return;
+  Page page = comparePage(one, other, report, {shown.shaderOf(one), shown.shaderOf(other)});
+  page.exposure = shown.exposure;
+  writePage(html, page);
 }
 
 CompareSettings CompareFlags::settings() const {

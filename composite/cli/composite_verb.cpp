@@ -54,12 +54,12 @@ void composite(const CompositeFlags& flags, const FrameRun& frame, const Kept& k
     return;
   }
   Result result = compositor.run(request);
-  nlohmann::json report{{"output", flags.output}, {"method", result.plan.method}};
-  reportSpace(compositor.shot().opaque.space, report);
+  const Shot& shot = compositor.shot();
+  nlohmann::json report{{"output", flags.output}, {"method", result.plan.method}, {"understood", shot.understood}};
+  reportSpace(shot.opaque.space, report);
   reportError(flags.run, result, report);
   // The picture last, whose header says that all is done.
-  flags.preview.write(request.shot.colour, request.shot.scene.assetRoot, compositor.shot().opaque.space,
-                      result.picture.rgba);
+  flags.preview.write(request.shot.colour, request.shot.scene.assetRoot, shot.opaque.space, result.picture.rgba);
   say(result.stages.time("write", [&] { return compositor.write(flags.output, result, frame.attributes); }));
   reportRun(flags.run, result.stages, result.counts, result.device, report);
 }
@@ -92,6 +92,7 @@ void compositeViews(const CompositeFlags& flags, const FrameRun& frame, const Ke
     results.push_back(compositor.run(request));
     nlohmann::json each{{"view", view}, {"method", results.back().plan.method}};
     reportSpace(compositor.shot().opaque.space, each);
+    each["understood"] = compositor.shot().understood;
     reportError(flags.run, results.back(), each);
     report["views"].push_back(each);
   }

@@ -19,6 +19,7 @@ struct InspectFlags {
   std::vector<std::string> scenes;
   bool devices = false, json = false;
   ReadFlags read;
+  PageDisplayFlags shown;
   SequenceFlags sequence;
 };
 
@@ -36,6 +37,7 @@ void checkPage(const InspectFlags& flags) {
     throw UsageError("--scene: found it without --html, expected --html FILE.html: the page shows the scene");
   if (!flags.camera.empty() && flags.scenes.empty())
     throw UsageError("--camera: found it without --scene, expected --scene FILE.glb: the camera sees that");
+  flags.shown.check(!flags.page.empty());
 }
 
 void inspect(const InspectFlags& flags) {
@@ -48,7 +50,8 @@ void inspect(const InspectFlags& flags) {
   if (flags.file.empty()) throw UsageError("inspect: found neither FILE nor --devices, expected one of them");
   const CameraChoice camera = cameraChoice(flags.camera);
   const nlohmann::json report = inspectExr(flags.file, flags.read.options());
-  if (!flags.page.empty()) writeFilePage(flags.page, flags.file, report, flags.read.options(), flags.scenes, camera);
+  if (!flags.page.empty())
+    writeFilePage(flags.page, flags.file, report, flags.read.options(), flags.scenes, camera, flags.shown);
   if (flags.json)
     fmt::print("{}\n", report.dump(2));
   else
@@ -70,6 +73,7 @@ void addInspect(CLI::App& app) {
       ->allow_extra_args(false);
   verb->add_option("--camera", flags->camera,
                    "Of --scene: glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES, or fit[:A,E]");
+  flags->shown.addTo(*verb, "--html");
   flags->read.addTo(*verb);
   flags->sequence.addTo(*verb, {.sideBySide = true, .resumes = false});
   verb->callback([verb, flags] {

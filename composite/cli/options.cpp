@@ -40,10 +40,11 @@ void addThinFlag(CLI::App& verb, std::string& thin) {
 }
 
 void SceneFlags::addTo(CLI::App& verb) {
-  verb.add_option("--camera", cameras,
-                  "glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical), or "
-                  "fit[:AZIMUTH,ELEVATION], which "
-                  "frames the scene from there (30,20); VIEW=CAMERA is that of one view")
+  verb.add_option(
+          "--camera", cameras,
+          "glTF camera by name, picture for the EXR's own, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical), or "
+          "fit[:AZIMUTH,ELEVATION], which "
+          "frames the scene from there (30,20); VIEW=CAMERA is that of one view")
       ->allow_extra_args(false);
   verb.add_option("--environment", environment,
                   "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");

@@ -114,7 +114,7 @@ SceneLook lookAt(ScenePreview& preview) {
   }
   if (!table.rows.empty()) look.tables.push_back(std::move(table));
   PagePicture composited{"composited at pixel centres",
-                         Image<glm::vec3>(result.picture.rgba.width(), result.picture.rgba.height())};
+                         Image<glm::vec3>(result.picture.rgba.width(), result.picture.rgba.height()), 0};
   for (std::size_t i = 0; i < composited.rgb.size(); ++i) composited.rgb[i] = glm::vec3(result.picture.rgba[i]);
   look.pictures.push_back(std::move(composited));
   if (PagePicture counts = countPicture(result, look); !counts.rgb.empty()) look.pictures.push_back(std::move(counts));

@@ -62,10 +62,11 @@ void makeFolder(const std::string& folder) {
   if (error) throw ResourceError(fmt::format("{}: cannot be made: {}", folder, error.message()));
 }
 
-void writeStudy(const std::string& folder, const OpaqueFile& opaque, const StudyOutcome& outcome) {
+void writeStudy(const std::string& folder, const OpaqueFile& opaque, const StudyOutcome& outcome,
+                const DisplayShader& shown, double exposure) {
   const std::vector<StudyRow>& rows = outcome.rows;
   std::vector<PagePicture> pictures;
-  for (std::size_t i = 0; i < rows.size(); ++i) pictures.push_back({rowName(rows[i]), outcome.pictures[i]});
+  for (std::size_t i = 0; i < rows.size(); ++i) pictures.push_back({rowName(rows[i]), outcome.pictures[i], 0});
   const std::string base = folder + "/study.";
   const Plot plot = studyPlot(rows);
   writeText(base + "txt", outcome.machine + "\n\n" + studyText(rows));
@@ -89,6 +90,8 @@ void writeStudy(const std::string& folder, const OpaqueFile& opaque, const Study
   page.plotSvg = plotSvg(plot);
   page.pictures = pictures;
   page.right = pictures.size() > 1 ? 1 : 0;
+  page.displays = {shown};
+  page.exposure = exposure;
   writePage(base + "html", page);
 }
 

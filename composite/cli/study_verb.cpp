@@ -28,6 +28,7 @@ void study(const StudyFlags& flags, FrameRun& frame, const std::shared_ptr<KeptW
   const Threads threads(flags.run.threads);
   const Request base = flags.base();
   const std::vector<StudyCandidate> candidates = flags.candidates(base);
+  flags.checkShown();
   double before = 0.0, part = 0.0;  // of the whole: what is done, and what the method that runs now is
   const auto watch = [&, tell = frame.watcher()](const std::string& stage, double share) {
     tell(stage, before + part * share);
@@ -41,7 +42,7 @@ void study(const StudyFlags& flags, FrameRun& frame, const std::shared_ptr<KeptW
   };
   const StudyOutcome outcome = runStudy(compositor, candidates, flags.repeats, begins);
   const OpaqueFile& picture = compositor.shot().opaque;
-  writeStudy(flags.folder, picture, outcome);
+  flags.write(picture, outcome);
   frame.summary = jsonOf(outcome.rows, picture.space);
   if (flags.run.json)
     fmt::print("{}\n", jsonOf(outcome.rows, picture.space).dump(2));
@@ -81,6 +82,7 @@ void StudyFlags::addTo(CLI::App& verb) {
       ->capture_default_str();
   verb.add_option("--threads", run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
   verb.add_flag("--json", run.json, "Print the table as JSON");
+  shown.addDisplayTo(verb, "study.html");
 }
 
 Request StudyFlags::base() const {
@@ -94,6 +96,16 @@ std::vector<StudyCandidate> StudyFlags::candidates(const Request& base) const {
   for (const std::string& precision : precisions) tiers.push_back(tierOf(precision));
   return studyCandidates(base, methods, passes, tiers,
                          [&](const std::string& name, int count) { return paintOf(name, count, render.stochastic); });
+}
+
+void StudyFlags::checkShown() const {
+  const ColourSpace anySpace = *spaceOf(namedSpaces()[0].chromaticities);
+  shown.shader(render.scene.colour.request(), render.scene.assetRoot, anySpace);
+}
+
+void StudyFlags::write(const OpaqueFile& picture, const StudyOutcome& outcome) const {
+  const DisplayShader shader = shown.shader(render.scene.colour.request(), render.scene.assetRoot, picture.space);
+  writeStudy(folder, picture, outcome, shader, shown.exposure);
 }
 
 void addStudy(CLI::App& app) {

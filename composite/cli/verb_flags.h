@@ -72,8 +72,13 @@ struct CompareFlags {
   std::string a, b, html, metadata = "fail";
   CompareSettings thresholds;
   bool json = false;
+  PageDisplayFlags shown;
   void addTo(CLI::App& verb);
   CompareSettings settings() const;
+  // Before any file is opened. Throws UsageError.
+  void check() const { shown.check(!html.empty()); }
+  // The page, where it is wanted.
+  void writeHtml(const ExrDocument& a, const ExrDocument& b, const CompareReport& report) const;
 };
 
 struct StudyFlags {
@@ -85,9 +90,14 @@ struct StudyFlags {
   std::vector<int> passes{1};
   std::vector<std::string> precisions{"float"};
   int repeats = 3;
+  DisplayFlags shown;  // of study.html
   void addTo(CLI::App& verb);
   Request base() const;                                               // throws UsageError
   std::vector<StudyCandidate> candidates(const Request& base) const;  // throws UsageError
+  // What study.html is shown by, before any file is opened. Throws UsageError, and what ColourConfig::read throws.
+  void checkShown() const;
+  // What the verb leaves in its folder, which is there. Throws ResourceError.
+  void write(const OpaqueFile& picture, const StudyOutcome& outcome) const;
 };
 
 }  // namespace pellucid::cli

@@ -60,8 +60,8 @@ DisplayChoice settled(const ColourConfig::Impl& library, DisplayChoice choice) {
   return choice;
 }
 
-ocio::ConstCPUProcessorRcPtr processorFor(const ColourConfig::Impl& library, const DisplayChoice& choice,
-                                          const ColourSpace& space) {
+ocio::ConstProcessorRcPtr processorFor(const ColourConfig::Impl& library, const DisplayChoice& choice,
+                                       const ColourSpace& space) {
   const glm::dmat3 exposure(std::exp2(choice.exposure));
   ocio::GroupTransformRcPtr steps = ocio::GroupTransform::Create();
   if (isRaw(*library.config, choice)) {
@@ -83,12 +83,57 @@ ocio::ConstCPUProcessorRcPtr processorFor(const ColourConfig::Impl& library, con
     shown->setView(choice.view.c_str());
     steps->appendTransform(shown);
   }
-  return library.config->getProcessor(steps)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_VERY_GOOD);
+  return library.config->getProcessor(steps);
+}
+
+std::vector<float> valuesOf(const float* values, std::size_t count) {
+  return {values, values + count};
+}
+
+// The text looks the last value up as the first of a second row, which a table of one row does not have. With three
+// rows the middle of the texture is the table still, and below it that value stands.
+void addLastRow(ShaderTable& table) {
+  const std::vector<float> row = table.values;
+  const auto last = row.end() - table.channels;
+  table.values.insert(table.values.end(), row.begin(), row.end());
+  for (int i = 0; i < table.width; ++i) table.values.insert(table.values.end(), last, row.end());
+  table.height = 3;
+}
+
+ShaderTable flatTable(const ocio::GpuShaderDesc& shader, unsigned index) {
+  const char *texture = nullptr, *sampler = nullptr;
+  unsigned width = 0, height = 0;
+  ocio::GpuShaderDesc::TextureType channels{};
+  ocio::Interpolation interpolation{};
+  const float* values = nullptr;
+  shader.getTexture(index, texture, sampler, width, height, channels, interpolation);
+  shader.getTextureValues(index, values);
+  ShaderTable table{sampler, static_cast<int>(width), static_cast<int>(height)};
+  table.channels = channels == ocio::GpuShaderDesc::TEXTURE_RED_CHANNEL ? 1 : 3;
+  table.linear = interpolation != ocio::INTERP_NEAREST;
+  table.values = valuesOf(values, std::size_t{width} * height * static_cast<std::size_t>(table.channels));
+  if (height == 1) addLastRow(table);
+  return table;
+}
+
+ShaderTable cubeTable(const ocio::GpuShaderDesc& shader, unsigned index) {
+  const char *texture = nullptr, *sampler = nullptr;
+  unsigned edge = 0;
+  ocio::Interpolation interpolation{};
+  const float* values = nullptr;
+  shader.get3DTexture(index, texture, sampler, edge, interpolation);
+  shader.get3DTextureValues(index, values);
+  const int size = static_cast<int>(edge);
+  ShaderTable table{sampler, size, size, size};
+  table.linear = interpolation != ocio::INTERP_NEAREST;
+  table.values = valuesOf(values, std::size_t{edge} * edge * edge * 3);
+  return table;
 }
 
 }  // namespace
 
 struct DisplayTransform::Impl {
+  ocio::ConstProcessorRcPtr steps;
   ocio::ConstCPUProcessorRcPtr processor;
 };
 
@@ -96,17 +141,36 @@ DisplayTransform::DisplayTransform(const ColourConfig& config, const DisplayChoi
     : impl_(std::make_unique<Impl>()) {
   const DisplayChoice chosen = settled(config.library(), choice);
   try {
-    impl_->processor = processorFor(config.library(), chosen, space);
+    impl_->steps = processorFor(config.library(), chosen, space);
+    impl_->processor = impl_->steps->getOptimizedCPUProcessor(ocio::OPTIMIZATION_VERY_GOOD);
   } catch (const ocio::Exception& error) {
     throw InputError(fmt::format("{}: display {}, view {}: {}", config.library().title(), chosen.display, chosen.view,
                                  oneLine(error.what())));
   }
-  title_ = fmt::format("display {}, view {}, {}exposure {:g}", chosen.display, chosen.view,
-                       chosen.look.empty() ? "" : "look " + chosen.look + ", ", chosen.exposure);
+  names_ = fmt::format("display {}, view {}{}", chosen.display, chosen.view,
+                       chosen.look.empty() ? "" : ", look " + chosen.look);
+  title_ = fmt::format("{}, exposure {:g}", names_, chosen.exposure);
 }
 
 DisplayTransform::~DisplayTransform() = default;
 DisplayTransform::DisplayTransform(DisplayTransform&&) noexcept = default;
+
+DisplayShader DisplayTransform::shader() const {
+  DisplayShader shader{names_, "", {}};
+  try {
+    ocio::GpuShaderDescRcPtr text = ocio::GpuShaderDesc::CreateShaderDesc();
+    text->setLanguage(ocio::GPU_LANGUAGE_GLSL_ES_3_0);
+    text->setFunctionName("shown");
+    text->setResourcePrefix("shown_");
+    impl_->steps->getOptimizedGPUProcessor(ocio::OPTIMIZATION_VERY_GOOD)->extractGpuShaderInfo(text);
+    shader.text = text->getShaderText();
+    for (unsigned i = 0; i < text->getNumTextures(); ++i) shader.tables.push_back(flatTable(*text, i));
+    for (unsigned i = 0; i < text->getNum3DTextures(); ++i) shader.tables.push_back(cubeTable(*text, i));
+  } catch (const ocio::Exception& error) {
+    throw InputError(fmt::format("{}: found no shader for it: {}", title_, oneLine(error.what())));
+  }
+  return shader;
+}
 
 void DisplayTransform::apply(Image<glm::vec3>& picture) const {
   tbb::parallel_for(0, picture.height(), [&](int y) {

@@ -60,6 +60,26 @@ std::string packed(const Image<glm::vec3>& rgb) {
   return base64(deflated);
 }
 
+// Floats, low bytes first.
+std::string packed(const std::vector<float>& values) {
+  std::vector<unsigned char> bytes(values.size() * sizeof(float));
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return base64(bytes);
+}
+
+nlohmann::json jsonOf(const DisplayShader& display) {
+  nlohmann::json json{{"title", display.title}, {"shader", display.text}, {"tables", nlohmann::json::array()}};
+  for (const ShaderTable& table : display.tables)
+    json["tables"].push_back({{"sampler", table.sampler},
+                              {"width", table.width},
+                              {"height", table.height},
+                              {"depth", table.depth},
+                              {"channels", table.channels},
+                              {"linear", table.linear},
+                              {"data", packed(table.values)}});
+  return json;
+}
+
 std::string tableHtml(const PageTable& table) {
   std::string html = "<h2>" + escapedHtml(table.title) + "</h2><table><tr>";
   for (const std::string& cell : table.head) html += "<th>" + escapedHtml(cell) + "</th>";
@@ -98,11 +118,17 @@ std::string escapedHtml(const std::string& text) {
 }
 
 std::string pageText(const Page& page) {
-  nlohmann::json data{{"left", page.left}, {"right", page.right}, {"pictures", nlohmann::json::array()}};
+  nlohmann::json data{{"left", page.left},
+                      {"right", page.right},
+                      {"exposure", page.exposure},
+                      {"displays", nlohmann::json::array()},
+                      {"pictures", nlohmann::json::array()}};
+  for (const DisplayShader& display : page.displays) data["displays"].push_back(jsonOf(display));
   for (const PagePicture& picture : page.pictures)
     data["pictures"].push_back({{"name", picture.name},
                                 {"width", picture.rgb.width()},
                                 {"height", picture.rgb.height()},
+                                {"display", picture.display},
                                 {"data", packed(picture.rgb)}});
   std::string body = "<h1>" + escapedHtml(page.title) + "</h1>\n";
   for (const std::string& line : page.lines) body += "<p>" + escapedHtml(line) + "</p>\n";
@@ -115,6 +141,7 @@ std::string pageText(const Page& page) {
     // File names need not be UTF-8; what is not becomes a replacement character.
     html += "<script id=\"data\" type=\"application/json\">" +
             scriptSafe(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) + "</script>\n<script>";
+    html += kPageDisplayScript;
     html += kPageScript;
     html += "</script>\n";
   }
@@ -131,8 +158,10 @@ void writePage(const std::string& path, const Page& page) {
   file.commit();
 }
 
-Page comparePage(const ExrDocument& a, const ExrDocument& b, const CompareReport& report) {
+Page comparePage(const ExrDocument& a, const ExrDocument& b, const CompareReport& report,
+                 const std::vector<DisplayShader>& displays) {
   Page page;
+  page.displays = displays;
   page.title = a.path + " against " + b.path;
   page.lines.push_back(report.verdict == Verdict::failed   ? "They differ."
                        : report.verdict == Verdict::warned ? "They differ within the limits, with warnings."
@@ -161,7 +190,8 @@ Page comparePage(const ExrDocument& a, const ExrDocument& b, const CompareReport
                                                                          : "";
         const std::vector<const ExrChannel*> shown = shownChannels(part, inner);
         if (shown.empty()) continue;
-        page.pictures.push_back({(document == &a ? "A " : "B ") + layer.name, layerPicture(part, shown)});
+        page.pictures.push_back({(document == &a ? "A " : "B ") + layer.name, layerPicture(part, shown),
+                                 areColours(shown) ? (document == &a ? 0 : 1) : -1});
         break;
       }
   page.right = page.pictures.size() > 1 ? 1 : 0;

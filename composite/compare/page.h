@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "composite/colour/display.h"
 #include "composite/compare/compare.h"
 #include "gbuffer/exr_document.h"
 #include "gbuffer/image.h"
@@ -14,6 +15,7 @@ namespace pellucid {
 struct PagePicture {
   std::string name;
   Image<glm::vec3> rgb;  // scene-linear
+  int display = -1;      // of Page::displays; -1: numbers that are no colours, shown as greys by the curve of sRGB
 };
 
 struct PageTable {
@@ -28,7 +30,9 @@ struct Page {
   std::vector<PageTable> tables;
   std::string plotSvg;  // one drawing or several, "" for none
   std::vector<PagePicture> pictures;
-  int left = 0, right = 1;  // pictures shown first
+  int left = 0, right = 1;                   // pictures shown first
+  std::vector<DisplayShader> displays = {};  // by which pictures are shown, at 0 stops
+  double exposure = 0.0;                     // stops, at first
 };
 
 // Text as HTML and SVG show it.
@@ -40,6 +44,8 @@ std::string pageText(const Page& page);
 // Writes it whole or not at all. Throws ResourceError.
 void writePage(const std::string& path, const Page& page);
 
-Page comparePage(const ExrDocument& a, const ExrDocument& b, const CompareReport& report);
+//   displays  of colours of A and of B
+Page comparePage(const ExrDocument& a, const ExrDocument& b, const CompareReport& report,
+                 const std::vector<DisplayShader>& displays);
 
 }  // namespace pellucid

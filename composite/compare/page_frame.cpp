@@ -23,14 +23,12 @@ const char* const kPageViews = R"HTML(<div class="controls">
 <label>exposure <input id="exposure" type="range" min="-10" max="10" step="0.25" value="0"> <span id="stops">0</span></label>
 <label>error scale 1e<input id="scale" type="range" min="-5" max="1" step="1" value="0"> <span id="scaletext">0</span></label>
 <button id="reset">whole picture</button></div>
-<div class="views"><figure><canvas id="view"></canvas><figcaption>left and right of the split; drag moves, the wheel zooms both views</figcaption></figure>
+<div class="views"><figure><canvas id="view"></canvas><figcaption>left and right of the split; drag moves, the wheel zooms both views; <span id="shownby"></span></figcaption></figure>
 <figure><canvas id="heat"></canvas><canvas id="legend"></canvas><figcaption>largest |left - right| of a channel, logarithmic; grey is exactly 0, magenta is not finite in one</figcaption></figure></div>
 <div id="readout"></div>
 )HTML";
 
-const char* const kPageScript = R"JS('use strict';
-const data = JSON.parse(document.getElementById('data').textContent);
-const $ = id => document.getElementById(id);
+const char* const kPageScript = R"JS(
 const toFloat = new Float32Array(65536);
 for (let h = 0; h < 65536; ++h) {
   const s = h & 0x8000 ? -1 : 1, e = h >> 10 & 31, m = h & 1023;
@@ -52,7 +50,7 @@ function display(v) {
   if (v >= 1) return 255;
   return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
 }
-const state = { left: data.left, right: data.right, split: 0.5, exposure: 0, scale: 0, zoom: 1, x: 0, y: 0 };
+const state = { left: data.left, right: data.right, split: 0.5, exposure: data.exposure, scale: 0, zoom: 1, x: 0, y: 0 };
 const cache = new Map();
 function bitmap(key, width, height, fill) {
   if (cache.has(key)) return cache.get(key);
@@ -68,6 +66,7 @@ function bitmap(key, width, height, fill) {
 function exposed(index) {
   const p = data.pictures[index], n = p.width * p.height, gain = 2 ** state.exposure;
   return bitmap('p' + index + ':' + state.exposure, p.width, p.height, out => {
+    if (programs[p.display]) return shade(programs[p.display], p, gain, out);
     const shown = new Uint8ClampedArray(65536);
     for (let h = 0; h < 65536; ++h) shown[h] = display(toFloat[h] * gain);
     for (let i = 0; i < n; ++i) {
@@ -110,6 +109,7 @@ function place(canvas, picture) {
 function drawAt(context, source, k) { context.drawImage(source, -state.x * k, -state.y * k, source.width * k, source.height * k); }
 function draw() {
   const p = data.pictures[state.left];
+  $('shownby').textContent = shownBy(p);
   const [view, k] = place($('view'), p), edge = state.split * $('view').width;
   for (const [index, from, to] of [[state.left, 0, edge], [state.right, edge, $('view').width]]) {
     view.save(); view.beginPath(); view.rect(from, 0, to - from, $('view').height); view.clip();
@@ -160,6 +160,8 @@ function wire() {
     $(side).value = state[side];
     $(side).oninput = () => { state[side] = +$(side).value; draw(); };
   }
+  $('exposure').min = Math.min(-10, data.exposure); $('exposure').max = Math.max(10, data.exposure);
+  $('exposure').value = data.exposure;
   for (const name of ['split', 'exposure', 'scale']) $(name).oninput = () => { state[name] = +$(name).value; draw(); };
   $('reset').onclick = () => { state.zoom = 1; state.x = state.y = 0; draw(); };
   for (const canvas of [$('view'), $('heat')]) {
@@ -186,7 +188,7 @@ function wire() {
   }
   window.onresize = draw;
 }
-window.pellucid = { data, state, draw, valueAt, ready: Promise.all(data.pictures.map(unpack)).then(() => { wire(); draw(); }) };
+window.pellucid = { data, state, draw, valueAt, exposed, programs, ready: Promise.all(data.pictures.map(unpack)).then(() => { wire(); draw(); }) };
 )JS";
 
 }  // namespace pellucid

@@ -1,5 +1,7 @@
 #include "composite/compare/page_layers.h"
 
+#include "gbuffer/channels.h"
+
 namespace pellucid {
 
 std::vector<const ExrChannel*> shownChannels(const ExrPart& part, const std::string& layer) {
@@ -11,6 +13,12 @@ std::vector<const ExrChannel*> shownChannels(const ExrPart& part, const std::str
         channel.name.compare(0, prefix.size(), prefix) == 0)
       return {&channel, &channel, &channel};
   return {};
+}
+
+bool areColours(const std::vector<const ExrChannel*>& channels) {
+  const std::string& name = channels[0]->name;
+  const auto dot = name.rfind('.');
+  return channels[0] != channels[1] && !saysData(dot == std::string::npos ? "" : name.substr(0, dot));
 }
 
 Image<glm::vec3> layerPicture(const ExrPart& part, const std::vector<const ExrChannel*>& channels, int step) {

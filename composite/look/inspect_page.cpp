@@ -81,9 +81,11 @@ PageTable channelTable(const ExrDocument& document) {
 }  // namespace
 
 Page inspectPage(const ExrDocument& document, const std::string& report,
-                 const std::optional<UnderstoodShot>& understood, const std::optional<SceneLook>& scene) {
+                 const std::optional<UnderstoodShot>& understood, const std::optional<SceneLook>& scene,
+                 const DisplayShader& shown) {
   Page page;
   page.title = document.path;
+  page.displays = {shown};
   std::istringstream lines(report);
   // Rows that are set in are in the tables and the histogram.
   for (std::string line; std::getline(lines, line);)
@@ -100,14 +102,15 @@ Page inspectPage(const ExrDocument& document, const std::string& report,
     const GBuffer& gbuffer = understood->file->gbuffer;
     const DepthBins bins = depthBins(gbuffer.viewZ);
     page.pictures.push_back(depthPicture(gbuffer.viewZ, bins, step));
-    if (layers.empty()) page.pictures.push_back({"flattened", flatPicture(gbuffer.beauty)});
+    if (layers.empty()) page.pictures.push_back({"flattened", flatPicture(gbuffer.beauty), 0});
     page.plotSvg = histogramSvg(bins);
     if (understood->camera)
       page.plotSvg += planSvg(gbuffer, *understood->camera, scene ? scene->parts : std::vector<ScenePart>());
   }
   const std::size_t own = page.pictures.size();
   for (const LayerOfPart& layer : layers)
-    page.pictures.push_back({layer.name, layerPicture(*layer.part, layer.channels, step)});
+    page.pictures.push_back(
+        {layer.name, layerPicture(*layer.part, layer.channels, step), areColours(layer.channels) ? 0 : -1});
   // The picture first, whatever stands before it in the file.
   const std::string beauty = understood ? understood->file->choice.beautyChannel[0] : "";
   for (std::size_t i = 0; i < layers.size(); ++i)

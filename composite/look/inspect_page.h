@@ -28,7 +28,9 @@ struct UnderstoodShot {
 //   report      inspectionText() of the file
 //   understood  nothing where the file is no G-buffer
 //   scene       nothing where none was given
+//   shown       how colours are shown
 Page inspectPage(const ExrDocument& document, const std::string& report,
-                 const std::optional<UnderstoodShot>& understood, const std::optional<SceneLook>& scene);
+                 const std::optional<UnderstoodShot>& understood, const std::optional<SceneLook>& scene,
+                 const DisplayShader& shown);
 
 }  // namespace pellucid

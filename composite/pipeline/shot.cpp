@@ -9,6 +9,7 @@
 #include "composite/pipeline/colour_step.h"
 #include "composite/pipeline/memory_picture.h"
 #include "composite/pipeline/same_cameras.h"
+#include "composite/pipeline/understood_scene.h"
 #include "engine_bridge/embree/environment.h"
 #include "engine_bridge/scene/working_space.h"
 #include "gbuffer/depth_kind.h"
@@ -136,6 +137,14 @@ bool isChosen(const CameraChoice& camera) {
   return !std::holds_alternative<std::monostate>(camera);
 }
 
+// --camera picture: the file's own, unless a glTF camera has that name.
+bool isPictures(const CameraChoice& choice, const Scene& scene) {
+  const auto* named = std::get_if<NamedCamera>(&choice);
+  return named && named->name == "picture" &&
+         std::none_of(scene.cameras.begin(), scene.cameras.end(),
+                      [](const SceneCamera& camera) { return camera.name == "picture"; });
+}
+
 void takeCameraInMemory(const ShotRequest& request, Shot& shot) {
   shot.hasCamera = shot.hasScene || shot.opaque.gbuffer.camera || isChosen(request.camera);
   if (shot.hasCamera) shot.camera = chooseCamera(request.camera, shot.opaque.gbuffer, shot.scene, kMemoryPicture);
@@ -249,6 +258,7 @@ bool isExrName(const std::string& path) {
 
 Camera chooseCamera(const CameraChoice& choice, const GBuffer& gbuffer, const Scene& scene,
                     const std::string& opaquePath, const std::string& refused) {
+  if (gbuffer.camera && isPictures(choice, scene)) return *gbuffer.camera;
   if (const auto* placed = std::get_if<PlacedCamera>(&choice)) return placedCamera(*placed, gbuffer);
   if (const auto* named = std::get_if<NamedCamera>(&choice)) return namedCamera(named->name, scene, gbuffer);
   if (const auto* fitted = std::get_if<FittedCamera>(&choice))
@@ -338,6 +348,19 @@ void bringScene(const SceneOptions& options, ShotOrigin& origin, Shot& shot, Jou
   journal.note(origin.outside);
 }
 
+// Checks the camera, and says where the scene lies before it.
+void tellScene(const ShotRequest& request, Shot& shot, Journal& journal) {
+  std::optional<double> residual;
+  if (!shot.deepOpaque) residual = verifyCamera(shot.opaque, shot.camera);
+  if (!isChosen(request.camera)) expectOneCamera(shot, request.opaque);
+  std::vector<std::string> lines{fmt::format(
+      "camera: {}{}", shot.camera.origin,
+      residual ? fmt::format(", checked against positions: median {:.2g} px", *residual) : ", not checked")};
+  for (std::string& line : sceneLines(shot)) lines.push_back(std::move(line));
+  journal.note(lines);
+  shot.understood.insert(shot.understood.end(), lines.begin(), lines.end());
+}
+
 }  // namespace
 
 std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal& journal,
@@ -375,22 +398,20 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
     : keepsPicture ? keepPicture(request, *shot)
                    : readPicture(request, std::move(document), *shot);
     // A camera of the glTF's own may be animated.
-    shot->sceneCamera = shot->hasCamera && (std::holds_alternative<NamedCamera>(request.camera) ||
-                                            (!isChosen(request.camera) && !shot->opaque.gbuffer.camera));
+    const bool picturesOwn =
+        shot->opaque.gbuffer.camera && (!isChosen(request.camera) || isPictures(request.camera, shot->scene));
+    shot->sceneCamera = shot->hasCamera && !picturesOwn &&
+                        (!isChosen(request.camera) || std::holds_alternative<NamedCamera>(request.camera));
   });
   OpaqueFile& picture = shot->opaque;
   if (!shot->keptPicture) picture.space = colours.of(picture.space, request.opaque, picture.notes);
   bringScene(options, origin, *shot, journal);
-  journal.note(linesOf(*shot));
+  shot->understood = linesOf(*shot);
+  journal.note(shot->understood);
   journal.note(picture.notes);
+  if (const std::string before = shot->inMemory ? "" : compositedBefore(picture); !before.empty()) journal.note(before);
   journal.time("read deep", [&] { readDeep(request, deep, *shot); });
-  if (shot->hasScene) {
-    std::optional<double> residual;
-    if (!shot->deepOpaque) residual = verifyCamera(shot->opaque, shot->camera);
-    journal.note(fmt::format(
-        "camera: {}{}", shot->camera.origin,
-        residual ? fmt::format(", checked against positions: median {:.2g} px", *residual) : ", not checked"));
-  }
+  if (shot->hasScene) tellScene(request, *shot, journal);
   const bool sameSurroundings = origin.sameSurroundings(shot->origin);
   shot->origin = std::move(origin);
   chooseSurroundings(request, sameSurroundings, *shot, journal);

@@ -34,6 +34,7 @@ struct Shot {
   bool hasScene = true;                             // false when all transparent inputs are deep files
   bool sceneCamera = false;                         // the camera is one of the scene's, and moves with it
   bool hasCamera = true;                            // false where deep files alone need none, and none was found
+  std::vector<std::string> understood;              // picture, depth, camera and scene, a line each
   std::vector<std::string> geometry;                // the glTF files
   std::vector<std::unique_ptr<DeepSource>> deep;    // transparent layers that come as deep EXR
 };

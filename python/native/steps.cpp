@@ -116,11 +116,12 @@ void studyInto(Studied& made, const Words& words) {
   const auto threads = threadsOf(flags.run);
   const Request base = flags.base();
   const std::vector<StudyCandidate> candidates = flags.candidates(base);
+  if (!flags.folder.empty()) flags.checkShown();
   Compositor compositor(base, [](const std::string& note) { cli::say(note); });
   if (!flags.folder.empty()) cli::makeFolder(flags.folder);
   made.outcome = runStudy(compositor, candidates, flags.repeats);
   made.space = compositor.shot().opaque.space;
-  if (!flags.folder.empty()) cli::writeStudy(flags.folder, compositor.shot().opaque, made.outcome);
+  if (!flags.folder.empty()) flags.write(compositor.shot().opaque, made.outcome);
 }
 
 }  // namespace
@@ -185,9 +186,10 @@ py::dict compare(const Words& words) {
     const py::gil_scoped_release unlocked;
     const Parsed<cli::CompareFlags> parsed("compare", words);
     const cli::CompareFlags& flags = parsed.flags;
+    flags.check();
     const ExrDocument a = readExr(flags.a), b = readExr(flags.b);
     const CompareReport found = compareExr(a, b, flags.settings());
-    if (!flags.html.empty()) writePage(flags.html, comparePage(a, b, found));
+    flags.writeHtml(a, b, found);
     report = cli::jsonOf(found);
     differs = found.verdict == Verdict::failed;
   }

@@ -38,12 +38,12 @@ class Reading : public ::testing::Test {
     for (std::size_t i = 0; i < channel->bytes.size() / 4; ++i) count += std::abs(channel->at(i) - red) > 1e-3f;
     return count;
   }
-  // One opaque or half transparent sample a pixel, 16 x 16, of a camera with a field of 90 degrees.
+  // One opaque or half transparent sample a pixel, 16 x 16 twice as wide as high, of the camera of writeGlb()'s files.
   //   stored  its depth, from the ray's length over planar depth
   template <class F>
   void deep(const std::string& name, float colour, float alpha, F stored, const std::string& comment = "") {
     Camera camera;
-    camera.focal = {1, 1};
+    camera.focal = {1, 2};
     DeepHeader header;
     header.display = header.data = {0, 0, 16, 16};
     header.channels = {"R", "G", "B", "A", "Z"};
@@ -56,7 +56,7 @@ class Reading : public ::testing::Test {
     rows.channels.resize(5);
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x) {
-        const double a = (x + .5) / 8 - 1, b = 1 - (y + .5) / 8;
+        const double a = (x + .5) / 8 - 1, b = (1 - (y + .5) / 8) / 2;
         for (std::size_t c = 0; c < 3; ++c) rows.channels[c].push_back(colour);
         rows.channels[3].push_back(alpha);
         rows.channels[4].push_back(static_cast<float>(stored(std::sqrt(1 + a * a + b * b))));

@@ -110,7 +110,7 @@ TEST(Camera, RelativesOfTheAttributesAreUnderstood) {
     if (trial % 2) camera.viewFromWorld = glm::dmat4(1.0);
     const glm::dmat4 flip = glm::scale(glm::dmat4(1.0), glm::dvec3(1, 1, -1));
     const glm::dmat4 toCamera = flip * camera.viewFromWorld;
-    const double n = 0.1, f = 1000;
+    const double n = trial % 4 < 2 ? 0.1 : 1.0, f = trial % 8 < 4 ? 1000 : 1e9;
     for (int form = 0; form < 16; ++form) {
       const bool wide = form & 1, up = form & 2, transposed = form & 4, right = form & 8;
       glm::dmat4 projection(0.0);  // of left-handed camera space

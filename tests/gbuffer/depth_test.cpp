@@ -70,13 +70,13 @@ TEST_F(DepthKinds, LimitsOfARampAreNothing) {
 }
 
 TEST(DepthKindText, IsReadAndWritten) {
-  for (const char* text : {"planar", "ray", "inverse", "device", "device:reversed", "negative", "normalised:0:40",
-                           "normalised:0.5:40:inverted"})
+  for (const char* text : {"planar", "ray", "inverse", "device", "device:reversed", "negative", "ray:negative",
+                           "inverse:negative", "normalised:0:40", "normalised:0.5:40:inverted"})
     EXPECT_EQ(depthKindText(parseDepthKind(text)), text);
   EXPECT_EQ(parseDepthKind("auto").meaning, DepthMeaning::evidence);
-  for (const char* text : {"", "radial", "planar:", "planar:1", "device:forward", "normalised", "normalised:1",
-                           "normalised:4:2", "normalised:-1:2", "normalised:1:x", "normalised:1:2:upside", "auto:1",
-                           "normalised:1:2:inverted:", "planar|radial"})
+  for (const char* text : {"", "radial", "planar:", "planar:1", "device:forward", "planar:negative", "normalised",
+                           "normalised:1", "normalised:4:2", "normalised:-1:2", "normalised:1:x",
+                           "normalised:1:2:upside", "auto:1", "normalised:1:2:inverted:", "planar|radial"})
     EXPECT_THROW(parseDepthKind(text), UsageError) << text;
 }
 
@@ -101,6 +101,50 @@ TEST_F(DepthKinds, EvidenceAgainstAReadingIsSaid) {
   const OpaqueFile negative = read([](double z, double) { return -z; });
   EXPECT_TRUE(noted(negative, "negative"));
   EXPECT_LT(worst(negative), 1e-6);
+}
+
+// Where nothing tells, that is said.
+TEST_F(DepthKinds, NoiseHidesRaysAndThatIsSaid) {
+  auto noise = [state = 1u](double size) mutable {
+    state = state * 1664525u + 1013904223u;
+    return 1 + size * (2 * (state / 4294967296.0) - 1);
+  };
+  for (const double size : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1}) {
+    const OpaqueFile rays = read([&, noise](double z, double ray) mutable { return z * ray * noise(size); });
+    EXPECT_TRUE(noted(rays, "--depth-kind ray")) << size;
+    EXPECT_EQ(noted(rays, "do not tell from"), size > 1e-6) << size;
+  }
+  ReadOptions arnold;
+  arnold.preset = "arnold";
+  const auto noisy = [&, noise](double z, double) mutable { return z * noise(1e-3); };
+  EXPECT_FALSE(noted(read(noisy, arnold), "do not tell")) << "its row says what it writes";
+}
+
+// Below 0 the sizes of the numbers are looked at as above it.
+TEST_F(DepthKinds, MinusOtherReadings) {
+  const auto minusInverse = [](double z, double) { return -50 / z; };
+  const auto minusRay = [](double z, double ray) { return -z * ray; };
+  const std::pair<const char*, double (*)(double, double)> kinds[] = {{"inverse:negative", minusInverse},
+                                                                      {"ray:negative", minusRay}};
+  for (const auto& [name, stored] : kinds) {
+    try {
+      read(stored);
+      FAIL() << name << " read as minus planar depth";
+    } catch (const MeaningError& error) {
+      EXPECT_NE(std::string(error.what()).find(std::string("--depth-kind ") + name), std::string::npos) << error.what();
+    }
+    ReadOptions options;
+    options.depthKind = name;
+    options.metresPerUnit = name[0] == 'i' ? 50.0 : 1.0;
+    EXPECT_LT(worst(read(stored, options)), 1e-6) << name;
+    options.depthKind = "auto";
+    EXPECT_EQ(read(stored, options).choice.depthKind, name);
+  }
+  ReadOptions maya;
+  maya.preset = "maya";
+  EXPECT_EQ(read(minusInverse, maya).choice.depthKind, "inverse:negative");
+  EXPECT_EQ(read([](double z, double) { return -z; }, maya).choice.depthKind, "negative");
+  EXPECT_THROW(read([](double, double) { return -5.0; }, maya), MeaningError) << "a wall may be either";
 }
 
 // What is 1/z on a plane in perspective is z itself along parallel rays.

@@ -354,6 +354,33 @@ TEST_F(OpaqueRead, CameraAttributesAreReadAndScaled) {
   EXPECT_TRUE(noted(broken, "worldToNDC: found"));
 }
 
+TEST_F(OpaqueRead, AttributesOfOtherTypesAreNoted) {
+  Part whole = part({{"R", 1}, {"G", 1}, {"B", 1}, {"Z", 100}});
+  whole.strings["worldToCamera"] = whole.strings["worldToNDC"] = "1 0 0 0";
+  const OpaqueFile file = read({whole});
+  EXPECT_FALSE(file.gbuffer.camera.has_value());
+  EXPECT_TRUE(noted(file, "found string of 7 bytes, expected m44f"));
+  EXPECT_FALSE(file.cameraRefusal.empty());
+  whole.strings = {{"chromaticities", "0.64 0.33"}};
+  EXPECT_TRUE(noted(read({whole}), "attribute chromaticities: found string of 9 bytes"));
+}
+
+// Pixels stand in the order of the names: a name that is changed in place would give each channel another's.
+TEST_F(OpaqueRead, ChannelsOutOfOrderAreRefused) {
+  writeFile(folder_.path("shot.exr"), {part({{"B", 1}, {"G", 2}, {"R", 3}, {"Z", 4}})});
+  std::string bytes = slurp(folder_.path("shot.exr"));
+  const std::size_t at = bytes.find(std::string("G\0", 2), bytes.find("chlist"));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = 'T';
+  spit(folder_.path("shot.exr"), bytes);
+  try {
+    readOpaque(folder_.path("shot.exr"), {});
+    FAIL() << "it was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("found channel R after T"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(OpaqueRead, MipMapsAreRefused) {
   Part whole = part({{"R", 1}, {"G", 1}, {"B", 1}, {"Z", 1}});
   whole.tileSize = 8;
