@@ -121,32 +121,32 @@ Scaling scalingOf(const std::string& of, const std::vector<double>& sizes, const
 
 }  // namespace
 
-std::vector<Ratio> shotRatios(const Place& place) {
-  std::vector<Ratio> ratios;
-  const std::pair<const char*, double> samples[] = {{"bottles", 4.0}, {"smoke", 3.0}};
-  for (const auto& [name, aim] : samples) {
-    const Shot shot = sampleShot(place, name, 1080);
-    const std::vector<Measured> all =
-        inTurn({copyOf(shot.picture, place.folder + "/copy.exr"), compositeOf(place, shot, {}),
-                compositeOf(place, shot, {"--aa", "1"}), compositeOf(place, shot, {"--method", "phenomenological"})},
-               place.runs);
-    const std::string what = fmt::format("composite {}, 1080p", name);
-    ratios.push_back(timeRatio(what, all[1], all[0], "oiiotool copy", aim));
-    ratios.push_back(timeRatio(what + ", --aa 1", all[2], all[0], "oiiotool copy", 1.6));
-    ratios.push_back(timeRatio(what + ", --method phenomenological", all[3], all[0], "oiiotool copy", 0.0));
-    ratios.push_back(memoryRatio(what + ", peak memory", all[1], all[0], 1.5));
-  }
+std::vector<Ratio> sampleRatios(const Place& place, const std::string& name, double aim) {
+  const Shot shot = sampleShot(place, name, 1080);
+  const std::vector<Measured> all =
+      inTurn({copyOf(shot.picture, place.folder + "/copy.exr"), compositeOf(place, shot, {}),
+              compositeOf(place, shot, {"--aa", "1"}), compositeOf(place, shot, {"--method", "phenomenological"})},
+             place.runs);
+  const std::string what = fmt::format("composite {}, 1080p", name);
+  return {timeRatio(what, all[1], all[0], "oiiotool copy", aim),
+          timeRatio(what + ", --aa 1", all[2], all[0], "oiiotool copy", 1.6),
+          timeRatio(what + ", --method phenomenological", all[3], all[0], "oiiotool copy", 0.0),
+          memoryRatio(what + ", peak memory", all[1], all[0], 1.5)};
+}
+
+std::vector<Ratio> largeRatios(const Place& place) {
   const Shot small = panes(place, "corner", 2160, 2, 0.01);
-  const std::vector<Measured> wide = inTurn(
-      {copyOf(small.picture, place.folder + "/copy.exr"), compositeOf(place, small, {})}, std::max(1, place.runs / 2));
-  ratios.push_back(timeRatio("composite 1% of 3840 x 2160", wide[1], wide[0], "oiiotool copy", 1.5));
-  ratios.push_back(memoryRatio("composite 1% of 3840 x 2160, peak memory", wide[1], wide[0], 0.0));
-  const Shot shadows = sampleShot(place, "shadows", 1080);
+  const std::vector<Measured> wide =
+      inTurn({copyOf(small.picture, place.folder + "/copy.exr"), compositeOf(place, small, {})}, place.runs);
+  return {timeRatio("composite 1% of 3840 x 2160", wide[1], wide[0], "oiiotool copy", 1.5),
+          memoryRatio("composite 1% of 3840 x 2160, peak memory", wide[1], wide[0], 0.0)};
+}
+
+std::vector<Ratio> shadowRatios(const Place& place) {
+  const Shot shadows = sampleShot(place, "shadows", 360);  // rays for every fragment of every pass: minutes at 1080
   const std::vector<Measured> cast =
-      inTurn({compositeOf(place, shadows, {}), compositeOf(place, shadows, {"--shadows", "exact"})},
-             std::max(1, place.runs / 2));
-  ratios.push_back(timeRatio("composite shadows, --shadows exact", cast[1], cast[0], "without --shadows", 0.0));
-  return ratios;
+      inTurn({compositeOf(place, shadows, {}), compositeOf(place, shadows, {"--shadows", "exact"})}, place.runs);
+  return {timeRatio("composite shadows, 360p, --shadows exact", cast[1], cast[0], "without --shadows", 0.0)};
 }
 
 std::vector<Ratio> deepRatios(const Place& place, const std::string& deepFile) {

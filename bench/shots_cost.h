@@ -14,8 +14,13 @@ struct Place {
   int runs = 5;
 };
 
-// `composite` over the samples, against type-preserving copies by oiiotool: processor time and memory.
-std::vector<Ratio> shotRatios(const Place& place);
+// `composite` over a sample, against a type-preserving copy by oiiotool: processor time and memory.
+//   aim  of the default flags' time
+std::vector<Ratio> sampleRatios(const Place& place, const std::string& name, double aim);
+// The same of a large picture of which little is covered.
+std::vector<Ratio> largeRatios(const Place& place);
+// Light that reaches layers by rays, against the same picture without shadows.
+std::vector<Ratio> shadowRatios(const Place& place);
 // Flattening deep files, against oiiotool.
 std::vector<Ratio> deepRatios(const Place& place, const std::string& deepFile);
 // Cost against covered area, layers, passes, resolution and lights.

@@ -135,7 +135,7 @@ LookupText::LookupText(const BackdropView& seen, const OitPlanes& scattering, co
     SpreadLevel level(k, width(), height(), k == 1 ? diffusing : spreadLevels.back().holding);
     overStrips(level.holding.x0, level.holding.x1, [&](int x0, int x1) { wideHalved(*this, k, x0, x1, level); });
     level.repeat();
-    tbb::parallel_for(0, level.leastReach.width(), [&](int block) { level.summarise(block); });
+    tbb::parallel_for(0, level.blocks.width(), [&](int block) { level.summarise(block); });
     spreadLevels.push_back(std::move(level));
   }
 }

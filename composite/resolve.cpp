@@ -9,6 +9,7 @@
 
 #include "composite/denormals.h"
 #include "composite/methods/method.h"
+#include "composite/wide_resolve.h"
 #include "shaders/picture.h"
 
 namespace pellucid {
@@ -43,11 +44,12 @@ SumFormula formulaOf(const std::string& method) {
 
 Veil resolve(const OitPlanes& planes, const ResolveSettings& settings) {
   const int width = planes.data.width(), height = planes.data.height();
+  const bool wide = !planes.published() && settings.formula == SumFormula::mean && !settings.selfModulation;
   Veil veil(width, height);
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;
     for (int y = rows.begin(); y != rows.end(); ++y)
-      for (int x = 0; x < width; ++x) {
+      for (int x = wide ? resolveWide(planes, y, veil) : 0; x < width; ++x) {
         const shading::OitSums sums = shading::unpackSums(planes.at(x, y));
         const glm::vec4 solid = planes.solid.at(x, y);
         const bool hasSolid = std::isfinite(solid.a);

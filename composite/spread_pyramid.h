@@ -23,6 +23,7 @@ enum SpreadPlane {
   kRateMass,
   kSpreadPlanes
 };
+static_assert(kLeastReach == kSpreadMass + 1 && kMostRate == kLeastReach + 3);
 constexpr int kSpreadSums = kSpreadMass + 1;  // what a kernel adds up
 static_assert(sizeof(SpreadTexel) == kSpreadPlanes * sizeof(float) &&
               sizeof(SpreadBody) == kReachColour * sizeof(float));
@@ -34,9 +35,18 @@ struct SpreadLevel {
   int width, height;  // of the picture's part
   Window holding, stored;
   Columns texels;  // of `stored`, by SpreadPlane
-  // Of blocks of texels from the first of `stored` on, those that hold something: the least of leastReach, the most of
-  // mostRate; where nothing is, such as no comparison finds.
-  Image<float> leastReach, mostRate;
+  // Of the texels of a block that hold something; where nothing is, numbers that no comparison finds.
+  struct Extremes {
+    float leastReach = std::numeric_limits<float>::infinity(), mostReach = -leastReach;
+    float leastRate = leastReach, mostRate = -leastReach;
+    void join(const Extremes& other) {
+      leastReach = std::min(leastReach, other.leastReach);
+      mostReach = std::max(mostReach, other.mostReach);
+      leastRate = std::min(leastRate, other.leastRate);
+      mostRate = std::max(mostRate, other.mostRate);
+    }
+  };
+  Image<Extremes> blocks;  // of kBlock x kBlock texels, from the first of `stored` on
   static constexpr int kRepeated = PLD_SPREAD_TAPS / 2, kBlock = 8;
 
   //   below  the pixels that diffuse, or `holding` of the level before
@@ -54,8 +64,7 @@ struct SpreadLevel {
     if (stored.y1 == height + PLD_SPREAD_MARGIN) stored.y1 += kRepeated;
     texels = Columns(stored, kSpreadPlanes, 0.0f);
     const int across = (stored.width() + kBlock - 1) / kBlock, down = (stored.height() + kBlock - 1) / kBlock;
-    leastReach = Image<float>(across, down, std::numeric_limits<float>::infinity());
-    mostRate = Image<float>(across, down, -std::numeric_limits<float>::infinity());
+    blocks = Image<Extremes>(across, down);
   }
   // Of a texel wherever it lies.
   SpreadTexel clamped(ivec2 texel) const { return read<SpreadTexel>(texel); }
@@ -80,14 +89,11 @@ struct SpreadLevel {
     const int first = stored.x0 + block * kBlock;
     for (int x = first; x < std::min(first + kBlock, stored.x1); ++x) {
       const float* mass = texels.at(kSpreadMass, x, stored.y0);
-      const float* reach = texels.at(kLeastReach, x, stored.y0);
-      const float* rate = texels.at(kMostRate, x, stored.y0);
+      const std::size_t plane = texels.planeStride();
       for (int i = 0; i < stored.height(); ++i) {
         if (!(mass[i] > 0.0f)) continue;
-        float& least = leastReach.at(block, i / kBlock);
-        float& most = mostRate.at(block, i / kBlock);
-        least = std::min(least, reach[i]);
-        most = std::max(most, rate[i]);
+        const float* reach = mass + i + plane;  // and the planes behind it
+        blocks.at(block, i / kBlock).join({reach[0], reach[plane], reach[2 * plane], reach[3 * plane]});
       }
     }
   }

@@ -36,8 +36,8 @@ inline void awayInRows(const GaussianTaps& of, int top, Float8& dy2) {
   dy2 = place < float(of.taps.y1) ? dy * dy : Float8{} + std::numeric_limits<float>::infinity();
 }
 
-// Weights of the taps of a column in eight rows, and which of them count; false for none.
-inline bool weigh(const GaussianTaps& of, int x, int top, const Float8& dy2, Float8& weight, Int8& counts) {
+// Logarithms of the weights of a column's taps in eight rows, and which of them count.
+inline void weigh(const GaussianTaps& of, int x, int top, const Float8& dy2, Float8& logarithm, Int8& counts) {
   Float8 variance, depth;
   lanes::load(of.pixels.at(kTapVariance, x, top), variance);
   lanes::load(of.pixels.at(kTapDepth, x, top), depth);
@@ -45,9 +45,7 @@ inline bool weigh(const GaussianTaps& of, int x, int top, const Float8& dy2, Flo
   const Float8 r2 = dx * dx + dy2;
   const Float8 least = variance < of.variance ? variance : Float8{} + of.variance;
   counts = (r2 <= PLD_GAUSSIAN_REACH * PLD_GAUSSIAN_REACH * least) & ~(depth < of.inFront);
-  if (!lanes::anyOf(counts)) return false;
-  lanes::expOf(-0.5f * r2 / of.variance, weight);
-  return true;
+  logarithm = -0.5f * r2 / of.variance;
 }
 
 // Adds columns that were weighed.
@@ -83,10 +81,12 @@ inline void addRows(const GaussianTaps& of, int top, Float8 (&rows)[kLanes]) {
   int columns[kColumns];
   for (int x = begin; x < end;) {
     int count = 0;
-    for (; x < end && count < kColumns; ++x) {
+    for (const int stop = std::min(end, x + kColumns); x < stop; ++x) {
       columns[count] = x;
-      if (weigh(of, x, top, dy2, weights[count], counts[count])) ++count;
+      weigh(of, x, top, dy2, weights[count], counts[count]);
+      count += lanes::anyOf(counts[count]) ? 1 : 0;
     }
+    for (int i = 0; i < count; ++i) lanes::expOf(weights[i], weights[i]);  // each waits long, but for no other
     addColumns(of, top, count, columns, weights, counts, sums);
   }
   const Float8 values[kSums] = {sums[0].value, sums[1].value, sums[2].value, sums[3].value, sums[4].value};

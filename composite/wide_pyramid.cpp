@@ -176,15 +176,27 @@ namespace {
 // What of some texels is seen where they lie within reach.
 enum class Seen { nothing, whole, perhaps };
 
+// How far the centre is from the nearest of the texels from x0 and y0 on, eight either way; less a part of a texel that
+// no rounding makes up for.
+inline float leastAway(const PyramidTaps& of, int x0, int y0) {
+  const float left = float(x0) + 0.5f - of.place.x, right = of.place.x - (float(x0 + kLanes - 1) + 0.5f);
+  const float above = float(y0) + 0.5f - of.place.y, below = of.place.y - (float(y0 + kLanes - 1) + 0.5f);
+  const float dx = std::max({0.0f, left, right}), dy = std::max({0.0f, above, below});
+  return std::sqrt(dx * dx + dy * dy) - 0.0625f;
+}
+
 // Of all texels of the rows from `top` on and of the columns of a block, within reach or not.
 inline Seen seenOf(const PyramidTaps& of, int block, int top) {
   const SpreadLevel& level = of.texels;
   const int first = std::max(top - level.stored.y0, 0) / SpreadLevel::kBlock;
   const int last = std::min(top - level.stored.y0 + kLanes - 1, level.stored.height() - 1) / SpreadLevel::kBlock;
-  const float reach = std::min(level.leastReach.at(block, first), level.leastReach.at(block, last));
-  const float rate = std::max(level.mostRate.at(block, first), level.mostRate.at(block, last));
-  if (rate < 0.0f) return Seen::nothing;
-  return rate <= of.rateLimit && reach >= of.tailReach ? Seen::whole : Seen::perhaps;
+  SpreadLevel::Extremes all = level.blocks.at(block, first);
+  all.join(level.blocks.at(block, last));
+  if (!(all.leastRate <= of.rateLimit)) return Seen::nothing;
+  if (all.mostRate <= of.rateLimit && all.leastReach >= of.tailReach) return Seen::whole;
+  if (all.mostReach >= of.tailReach) return Seen::perhaps;  // seen from any distance, if all of a texel reaches as far
+  const float away = leastAway(of, level.stored.x0 + block * SpreadLevel::kBlock, top);
+  return all.mostReach <= (away - PLD_SPREAD_PARTS) * of.edge ? Seen::nothing : Seen::perhaps;
 }
 
 // Adds a column of eight texels that are seen whole to the sums of their rows.

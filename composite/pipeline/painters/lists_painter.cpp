@@ -88,7 +88,10 @@ class ListsPainter : public Painter {
     const SourceView view{listed, context_.picture, mixer_->rule()};
     const ListSink mixes = [&](const FragmentLists& lists) {
       if (!context_.sources.triangles()) context_.counts.fragments += lists.fragments.size();
-      window(sample, pass, low_ ? low_->among(lists) : lists, veil);
+      if (low_)
+        window(sample, pass, low_->among(lists), veil);
+      else
+        window(sample, pass, lists, veil);
     };
     context_.sources.each(view, mixes);
   }
