@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import tempfile
 
 from . import flags
 from .trouble import Trouble
@@ -44,18 +45,52 @@ def check(program, words, output):
     return [f"{program} says that it is {found[:40]!r}; the add-on was packed for {flags.VERSION}."]
 
 
+class Running:
+    """The program at its work, while Blender goes on with its own. What it says waits in files, so that it never waits
+    for somebody to read it. Raises Trouble where it cannot be run."""
+
+    def __init__(self, program, words):
+        self._said = tempfile.TemporaryFile()
+        self._answered = tempfile.TemporaryFile()
+        try:
+            self._process = subprocess.Popen([program, *words], stdin=subprocess.DEVNULL, stdout=self._answered,
+                                             stderr=self._said)
+        except OSError as error:
+            raise Trouble(f"{program}: cannot be run: {error.strerror}; expected the program pellucid, whose place the "
+                          "preferences of this add-on name.") from error
+
+    def ended(self):
+        """Whether it has come to its end."""
+        return self._process.poll() is not None
+
+    def stop(self):
+        """Ends it: it leaves no half of a picture."""
+        self._process.terminate()
+        self._process.wait()
+
+    def wait(self):
+        """What it was to do, once it has ended, as subprocess.run gives it."""
+        code = self._process.wait()
+        said, answered = _read(self._said), _read(self._answered)
+        return subprocess.CompletedProcess(self._process.args, code, answered, said)
+
+    def notes(self):
+        """Those it gave, once it has ended; raises Trouble with its error and what its exit code means."""
+        return [sentence for level, sentence in _messages(_told(self.wait()).stderr) if level != "error"]
+
+
+def _read(file):
+    file.seek(0)
+    return file.read().decode("utf-8", errors="replace")
+
+
 def run(program, words):
     """Runs it to its end. Returns the notes it gave; raises Trouble with its error and what its exit code means."""
-    return [sentence for level, sentence in _messages(_told(_ended(program, words)).stderr) if level != "error"]
+    return Running(program, words).notes()
 
 
 def _ended(program, words):
-    try:
-        return subprocess.run([program, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              encoding="utf-8", errors="replace", check=False)
-    except OSError as error:
-        raise Trouble(f"{program}: cannot be run: {error.strerror}; expected the program pellucid, whose place the "
-                      "preferences of this add-on name.") from error
+    return Running(program, words).wait()
 
 
 def _told(ended):

@@ -274,6 +274,15 @@ class Trouble(BlenderTest):
         self.composite()
         self.assertEqual(operator.run(os.path.join(FOLDER, "noting"), []), ["Frame 7: a guess"])
 
+    def test_a_program_that_is_ended(self):
+        module = __import__("pellucid.program", fromlist=["Running"])
+        running = module.Running(script("endless", "exec sleep 600\n"), [])
+        self.assertFalse(running.ended())
+        running.stop()
+        self.assertTrue(running.ended())
+        with self.assertRaisesRegex(Exception, "It was ended by signal 15"):
+            running.notes()
+
 
 if __name__ == "__main__":
     main()

@@ -48,7 +48,7 @@ def _material(name, colour, **inputs):
 
 def _object(add, name, material, **place):
     add(**place)
-    made = bpy.context.object
+    made = bpy.context.view_layer.objects.active
     made.name = name
     made.data.materials.append(material)
     return made
