@@ -56,6 +56,7 @@ int run(const std::vector<std::string>& words) {
   append(now, sampleRatios(place, "bottles", 4.0));
   append(now, sampleRatios(place, "smoke", 3.0));
   append(now, largeRatios(place));
+  append(now, edgeRatios(place));
   append(now, shadowRatios(place));
   append(now, deepRatios(place, words[2]));
   const std::vector<std::string> sentences = worse(now, before, kWorse);

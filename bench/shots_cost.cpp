@@ -142,6 +142,21 @@ std::vector<Ratio> largeRatios(const Place& place) {
           memoryRatio("composite 1% of 3840 x 2160, peak memory", wide[1], wide[0], 0.0)};
 }
 
+std::vector<Ratio> edgeRatios(const Place& place) {
+  std::vector<Ratio> ratios;
+  for (const char* name : {"bottles", "smoke", "street"}) {
+    const Shot shot = sampleShot(place, name, 540);
+    const std::vector<Measured> all =
+        inTurn({compositeOf(place, shot, {"--edges", "off"}), compositeOf(place, shot, {}),
+                compositeOf(place, shot, {"--filter", "blackman-harris:1.5"})},
+               place.runs);
+    const std::string what = fmt::format("composite {}, 540p", name);
+    ratios.push_back(timeRatio(what, all[1], all[0], "--edges off", 1.15));
+    ratios.push_back(timeRatio(what + ", --filter blackman-harris:1.5", all[2], all[0], "--edges off", 1.15));
+  }
+  return ratios;
+}
+
 std::vector<Ratio> shadowRatios(const Place& place) {
   const Shot shadows = sampleShot(place, "shadows", 360);  // rays for every fragment of every pass: minutes at 1080
   const std::vector<Measured> cast =

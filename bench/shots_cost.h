@@ -19,6 +19,8 @@ struct Place {
 std::vector<Ratio> sampleRatios(const Place& place, const std::string& name, double aim);
 // The same of a large picture of which little is covered.
 std::vector<Ratio> largeRatios(const Place& place);
+// What edges of the picture and its renderer's filter cost.
+std::vector<Ratio> edgeRatios(const Place& place);
 // Light that reaches layers by rays, against the same picture without shadows.
 std::vector<Ratio> shadowRatios(const Place& place);
 // Flattening deep files, against oiiotool.
