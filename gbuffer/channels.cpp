@@ -48,6 +48,19 @@ std::string withoutView(const std::string& partName, const std::string& view) {
   return partName[separator] == '_' || partName[separator] == '.' ? partName.substr(0, separator) : partName;
 }
 
+// Parts that nobody named: libraries number them.
+bool isNumbered(const std::string& word) {
+  for (const std::string front : {"subimage", "part"})
+    if (word.size() > front.size() && word.starts_with(front))
+      return std::all_of(word.begin() + static_cast<std::ptrdiff_t>(front.size()), word.end(),
+                         [](char c) { return c >= '0' && c <= '9'; });
+  return false;
+}
+
+bool saysNothing(const std::string& word) {
+  return word.empty() || isOneOf(word, kEmptyWords) || isNumbered(word);
+}
+
 // Of a file beside the picture, whose layers go by the name that was given; where it has one layer, by that alone.
 NamedChannel nameBeside(const ExrPart& part, int index, const ExrChannel& channel) {
   const auto layerOf = [](const std::string& name) { return name.substr(0, name.rfind('.') + 1); };
@@ -63,7 +76,7 @@ NamedChannel nameBeside(const ExrPart& part, int index, const ExrChannel& channe
   while (named.layerName.ends_with(".")) named.layerName.pop_back();
   named.suffix = lowerCase(split(channel.name).back());
   for (const std::string& word : split(named.layerName))
-    if (!word.empty() && !isOneOf(lowerCase(word), kEmptyWords)) named.layers.push_back(lowerCase(word));
+    if (!saysNothing(lowerCase(word))) named.layers.push_back(lowerCase(word));
   return named;
 }
 
@@ -92,7 +105,7 @@ NamedChannel nameOne(const ExrDocument& document, int index, const ExrChannel& c
   for (const std::string& word : words) {
     if (manyViews && std::find(document.views.begin(), document.views.end(), word) != document.views.end())
       named.view = word;
-    else if (!isOneOf(lowerCase(word), kEmptyWords))
+    else if (!saysNothing(lowerCase(word)))
       named.layers.push_back(lowerCase(word));
   }
   // In one part, channels without a view belong to the default view.

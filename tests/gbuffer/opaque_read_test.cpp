@@ -205,6 +205,21 @@ TEST_F(OpaqueRead, PartNamesAreLayersAndViewsArePicked) {
   EXPECT_EQ(read(stereo, options).gbuffer.viewZ.at(0, 0), 8.0f);
 }
 
+TEST_F(OpaqueRead, PartsThatAreNumberedHaveNoNames) {
+  for (const std::string front : {"subimage0", "part"}) {
+    Part colour = part({{"R", 1}, {"G", 2}, {"B", 3}, {"A", 1}}), depth = part({{"Z", 4}}),
+         normal = part({{"N.X", 0}, {"N.Y", 0}, {"N.Z", 1}});
+    colour.name = front + "0";
+    depth.name = front + "1";
+    normal.name = front + "2";
+    const OpaqueFile file = read({colour, depth, normal});
+    EXPECT_EQ(file.choice.beautyPart, 0);
+    EXPECT_EQ(file.choice.depthPart, 1);
+    EXPECT_EQ(file.gbuffer.viewZ.at(0, 0), 4.0f);
+    EXPECT_FALSE(file.gbuffer.normal.empty());
+  }
+}
+
 TEST_F(OpaqueRead, LuminanceChromaIsRefused) {
   EXPECT_NE(refusal<InputError>({part({{"Y", 1}, {"Z", 2}})}).find("luminance-chroma"), std::string::npos);
   EXPECT_NE(refusal<MeaningError>({part({{"Z", 2}})}).find("no colour"), std::string::npos);
