@@ -24,6 +24,15 @@ namespace {
 constexpr int kSize = 32, kFine = 32;
 const glm::dvec4 kFront(0.02, 0.3, 0.01, 1.0), kBack(2.0, 0.1, 1.1, 1.0);
 
+GBuffer emptyPicture(float depthPrecision) {
+  GBuffer gbuffer;
+  gbuffer.display = gbuffer.data = {0, 0, kSize, kSize};
+  gbuffer.depthPrecision = depthPrecision;
+  gbuffer.beauty = Image<glm::vec4>(kSize, kSize);
+  gbuffer.viewZ = Image<float>(kSize, kSize);
+  return gbuffer;
+}
+
 // A front whose edge is the line a x + b y = c, in pixels; both surfaces are tilted.
 struct Scene {
   double a, b, c;
@@ -37,11 +46,7 @@ struct Scene {
     return static_cast<double>(inside) / (kFine * kFine);
   }
   GBuffer picture() const {
-    GBuffer gbuffer;
-    gbuffer.display = gbuffer.data = {0, 0, kSize, kSize};
-    gbuffer.depthPrecision = 0x1p-20f;
-    gbuffer.beauty = Image<glm::vec4>(kSize, kSize);
-    gbuffer.viewZ = Image<float>(kSize, kSize);
+    GBuffer gbuffer = emptyPicture(0x1p-20f);
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const double f = share(x, y), u = x + 0.5, v = y + 0.5;
@@ -207,11 +212,7 @@ struct BallPicture {
     return static_cast<double>(inside) / (kFine * kFine);
   }
   GBuffer picture() const {
-    GBuffer gbuffer;
-    gbuffer.display = gbuffer.data = {0, 0, kSize, kSize};
-    gbuffer.depthPrecision = halfDepth ? 0x1p-10f : 0x1p-20f;
-    gbuffer.beauty = Image<glm::vec4>(kSize, kSize);
-    gbuffer.viewZ = Image<float>(kSize, kSize);
+    GBuffer gbuffer = emptyPicture(halfDepth ? 0x1p-10f : 0x1p-20f);
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const double f = share(x, y);
@@ -264,11 +265,7 @@ struct MeetingPicture {
   static double wall(glm::dvec2 at) { return 0.0034 - 3e-5 * at.x + 1e-5 * at.y; }
   double z(glm::dvec2 at) const { return 1.0 / std::max(floor(at), wall(at)); }
   GBuffer picture() const {
-    GBuffer gbuffer;
-    gbuffer.display = gbuffer.data = {0, 0, kSize, kSize};
-    gbuffer.depthPrecision = 0x1p-20f;
-    gbuffer.beauty = Image<glm::vec4>(kSize, kSize);
-    gbuffer.viewZ = Image<float>(kSize, kSize);
+    GBuffer gbuffer = emptyPicture(0x1p-20f);
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         glm::dvec4 sum(0.0);

@@ -5,12 +5,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <stdexcept>
 
+#include "tests/fuzzing/fuzz_program.h"
 #include "tests/support/program.h"
 #include "tests/support/random.h"
 
@@ -115,15 +115,6 @@ std::string wrongWith(const Ended& ended, bool compares, bool wrote) {
   return "";
 }
 
-std::uint64_t numberOf(const char* text, const char* name) {
-  std::uint64_t value = 0;
-  const std::string whole = text;
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (error != std::errc() || end != whole.data() + whole.size() || value == 0)
-    throw std::runtime_error(fmt::format("{}: found '{}', expected a whole number above 0", name, whole));
-  return value;
-}
-
 int run(int count, char** arguments) {
   const std::uint64_t wanted = count > 1 ? numberOf(arguments[1], "COUNT") : 1000;
   const std::uint64_t seed = count > 2 ? numberOf(arguments[2], "SEED") : 1;
@@ -165,10 +156,5 @@ int run(int count, char** arguments) {
 }  // namespace pellucid::test
 
 int main(int count, char** arguments) {
-  try {
-    return pellucid::test::run(count, arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "fuzz_files: {}\n", error.what());
-    return 2;
-  }
+  return pellucid::test::endOf("fuzz_files", pellucid::test::run, count, arguments);
 }

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -17,6 +16,7 @@
 #include "gbuffer/errors.h"
 #include "gbuffer/opaque_io.h"
 #include "tests/fuzzing/config_wounds.h"
+#include "tests/fuzzing/fuzz_program.h"
 #include "tests/fuzzing/header_wounds.h"
 #include "tests/gbuffer/layouts.h"
 
@@ -159,14 +159,6 @@ std::string inChild(std::uint64_t first, std::uint64_t last, std::uint64_t seed,
                      WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status));
 }
 
-std::uint64_t numberOf(const std::string& text, const char* name) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value == 0)
-    throw std::runtime_error(fmt::format("{}: found '{}', expected a whole number above 0", name, text));
-  return value;
-}
-
 int run(int count, char** arguments) {
   const std::uint64_t wanted = count > 1 ? numberOf(arguments[1], "COUNT") : 20000;
   const std::uint64_t seed = count > 2 ? numberOf(arguments[2], "SEED") : 1;
@@ -194,10 +186,5 @@ int run(int count, char** arguments) {
 }  // namespace pellucid::test
 
 int main(int count, char** arguments) {
-  try {
-    return pellucid::test::run(count, arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "fuzz_headers: {}\n", error.what());
-    return 2;
-  }
+  return pellucid::test::endOf("fuzz_headers", pellucid::test::run, count, arguments);
 }
