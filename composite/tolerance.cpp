@@ -208,6 +208,7 @@ double PromisedError::limit(double least) const {
 }
 
 bool PromisedError::allows(std::size_t pixel, const glm::dvec3& bound, const glm::dvec3& least) {
+  if (pixel >= accounts_.size()) return false;
   Account& account = accounts_[pixel];
   if (account.exact) return false;
   Account next = account;
@@ -221,6 +222,7 @@ bool PromisedError::allows(std::size_t pixel, const glm::dvec3& bound, const glm
 }
 
 void PromisedError::bookExact(std::size_t pixel, const glm::dvec3& truth) {
+  if (pixel >= accounts_.size()) return;
   Account& account = accounts_[pixel];
   for (int c = 0; c < 3; ++c) {
     const double least = static_cast<double>(account.least[c]) + truth[c];

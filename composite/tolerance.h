@@ -35,7 +35,7 @@ class PromisedError {
   // Of a pass whose truth may be anything: nothing is relative to it.
   static constexpr double kUnknown = -std::numeric_limits<double>::infinity();
 
-  //   pixels  of the data window, or the places of a deep picture
+  //   pixels  of the data window, or the places of a deep picture; a number beyond them has no account, and is exact
   PromisedError(std::size_t pixels, double tolerance, int passes);
   // What one value may be off by rounding alone, relative: floats of the veils and of their mean, here and in the
   // truth.

@@ -25,6 +25,7 @@ struct SceneRenderFlags {
 Request requestOver(const std::string& opaque, const SceneRenderFlags& flags, bool lit) {
   Request request;
   request.shot.opaque = opaque;
+  request.shot.renderedHere = true;
   request.shot.inputs = flags.opaque.scenes;
   request.shot.scene.metresPerUnit = flags.opaque.unit;
   request.shot.scene.lumensPerWatt = flags.opaque.lumensPerWatt;

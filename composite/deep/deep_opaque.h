@@ -19,6 +19,7 @@ struct OpaqueSample {
   float z;          // planar metres, > 0; half way through a volume
   glm::vec3 share;  // of the pixel, per channel, [0,1]
   glm::vec3 light;  // premultiplied by the share
+  float reach = 0;  // half of a volume's length: it lies from z - reach to z + reach; 0 for a surface
 };
 
 // Depths of samples as the file has them.
@@ -61,9 +62,21 @@ struct HeldOutRow {
   std::vector<float> z;              // per entry: depth of its opaque sample, planar metres, +inf beyond all
   std::vector<std::size_t> place;    // per entry: where among all entries of the picture, see placesOf()
   std::vector<std::uint8_t> bends;   // per entry: a layer in front of its sample refracts or diffuses
+  // Per entry, or empty where no volume is cut: how much of its sample it is, and whether the entry before it is of the
+  // same sample. Parts of a cut volume have no place of their own, kNoPlace.
+  std::vector<glm::vec3> part;
+  std::vector<std::uint8_t> goesOn;
+
+  static constexpr std::size_t kNoPlace = ~std::size_t{0};
+  glm::dvec3 partOf(std::size_t entry) const { return part.empty() ? glm::dvec3(1.0) : glm::dvec3(part[entry]); }
+  bool isOfSampleBefore(std::size_t entry) const { return entry < goesOn.size() && goesOn[entry]; }
 };
+// How a volume of the picture holds out the layers inside of it: as if it lay half way, which keeps one entry for each
+// sample, or cut where they are.
+enum class VolumeCuts { halfWay, atLayers };
 // A pixel without layers or solid has no entry, unless `everywhere` says that something else is in front of it.
-HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool everywhere = false);
+HeldOutRow holdOut(const FragmentLists& lists, const DeepOpaque& opaque, bool everywhere = false,
+                   VolumeCuts cuts = VolumeCuts::halfWay);
 // How many entries the whole picture has: its samples, and one more for each pixel.
 std::size_t placesOf(const DeepOpaque& opaque);
 

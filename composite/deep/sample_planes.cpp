@@ -85,7 +85,8 @@ void SamplePlanes::moveTo(glm::dvec2 sample, DeepOpaque& moved) const {
                              static_cast<double>(slopes_[k].y), orthographic_};
       moved.samples[k].z = static_cast<float>(plane.z(offset.x, offset.y));
     }
-    if (std::isfinite(centres_.farthest[pixel]) && last > first) moved.farthest[pixel] = moved.samples[last - 1].z;
+    if (std::isfinite(centres_.farthest[pixel]) && last > first)
+      moved.farthest[pixel] = moved.samples[last - 1].z + moved.samples[last - 1].reach;
   });
 }
 

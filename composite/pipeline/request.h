@@ -98,6 +98,8 @@ struct ShotRequest {
   // The opaque picture as the caller holds it (memory_picture.h), instead of that file; null: the file. Nothing of it
   // changes while a shot of it is loaded.
   std::shared_ptr<const GBuffer> memory;
+  // The picture was rendered of the same inputs a moment ago: its camera is meant, whatever cameras they hold.
+  bool renderedHere = false;
   std::vector<std::string> inputs;  // glTF, GLB and deep EXR with the transparent things
   ReadOptions read;
   SceneOptions scene;

@@ -352,7 +352,7 @@ void bringScene(const SceneOptions& options, ShotOrigin& origin, Shot& shot, Jou
 void tellScene(const ShotRequest& request, Shot& shot, Journal& journal) {
   std::optional<double> residual;
   if (!shot.deepOpaque) residual = verifyCamera(shot.opaque, shot.camera);
-  if (!isChosen(request.camera)) expectOneCamera(shot, request.opaque);
+  if (!isChosen(request.camera) && !request.renderedHere) expectOneCamera(shot, request.opaque);
   std::vector<std::string> lines{fmt::format(
       "camera: {}{}", shot.camera.origin,
       residual ? fmt::format(", checked against positions: median {:.2g} px", *residual) : ", not checked")};

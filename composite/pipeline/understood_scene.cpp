@@ -95,7 +95,9 @@ void expectOneCamera(const Shot& shot, const std::string& path) {
   const double z = range.farthest > 0.0 ? std::sqrt(range.nearest * range.farthest) : 1.0;
   std::string others;
   for (const SceneCamera& each : shot.scene.cameras) {
-    const Camera camera = cameraOf(each, gbuffer.display, gbuffer.pixelAspect);
+    Camera camera = cameraOf(each, gbuffer.display, gbuffer.pixelAspect);
+    // A perspective camera of a glTF cannot say that its lens is shifted, so that only the file knows.
+    if (!camera.orthographic && !gbuffer.camera->orthographic) camera.centre = gbuffer.camera->centre;
     if (pixelsApart(*gbuffer.camera, camera, gbuffer, z) <= kSamePixels) return;
     others += fmt::format("{}{} as {}", others.empty() ? "" : ", ", viewText(camera), camera.origin);
   }

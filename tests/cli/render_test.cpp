@@ -131,5 +131,31 @@ TEST_F(Render, WhatIsRefused) {
   EXPECT_EQ(filesIn(options.folder), (std::vector<std::string>{"opaque.exr", "scene.glb"}));
 }
 
+// The scene's own camera is another one: that of the first step is meant all the same.
+TEST_F(Render, TakesTheCameraThatItIsGiven) {
+  writeScene(true);
+  for (const std::string camera : {"eye=0.5,0,1;look=0,0,-5;up=0,1,0;fov=50", "fit", "cam"}) {
+    const Ended one =
+        run({"render", "scene.glb", "-o", "one.exr", "--size", "48x32", "--samples", "4", "--camera", camera});
+    ASSERT_EQ(one.code, 0) << camera << ": " << one.err;
+    ASSERT_EQ(run({"gbuffer", "scene.glb", "-o", "opaque.exr", "--size", "48x32", "--samples", "4", "--environment",
+                   "0.5,0.5,0.5", "--camera", camera})
+                  .code,
+              0);
+    ASSERT_EQ(run({"composite", "opaque.exr", "scene.glb", "-o", "two.exr", "--environment", "0.5,0.5,0.5", "--shadows",
+                   "exact", "--camera", "picture"})
+                  .code,
+              0);
+    const Image<glm::vec4> got = beauty("one.exr"), want = beauty("two.exr"), before = beauty("opaque.exr");
+    ASSERT_EQ(got.size(), want.size());
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      ASSERT_EQ(got[i], want[i]) << camera << " " << i;
+      changed += got[i] != before[i];
+    }
+    EXPECT_GT(changed, 20u) << camera;
+  }
+}
+
 }  // namespace
 }  // namespace pellucid

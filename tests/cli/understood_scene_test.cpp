@@ -28,9 +28,10 @@ class UnderstoodScene : public ::testing::Test {
   }
   static bool says(const Ended& ended, const std::string& words) { return ended.err.find(words) != std::string::npos; }
   // The camera of writeGlb()'s files has a focal length of 2.
-  void pictureOf(double focal) const {
+  void pictureOf(double focal, glm::dvec2 centre = {0, 0}) const {
     Camera camera;
     camera.focal = {focal, focal};
+    camera.centre = centre;
     const auto plane = [](float value) { return Image<float>(16, 16, value); };
     writeLayers(at("own.exr"), {0, 0, 16, 16}, {0, 0, 16, 16},
                 {{"", {{"R", plane(.2f)}, {"G", plane(.4f)}, {"B", plane(.6f)}, {"Z", plane(7)}}}}, {}, &camera);
@@ -92,6 +93,25 @@ TEST_F(UnderstoodScene, TwoCamerasThatDisagree) {
   EXPECT_TRUE(says(files, "camera: attribute worldToCamera")) << files.err;
   EXPECT_EQ(gltf.code, 0) << gltf.err;
   EXPECT_TRUE(says(gltf, "camera: glTF node cam")) << gltf.err;
+}
+
+// A glTF has no word for a shifted lens: what differs in it alone is one camera, and the file's is the whole of it.
+TEST_F(UnderstoodScene, AShiftedLensIsTheSameCamera) {
+  pane(3);
+  pictureOf(2.0, {.25, -.125});
+  const Ended shifted = composite("own.exr");
+  ASSERT_EQ(shifted.code, 0) << shifted.err;
+  EXPECT_TRUE(says(shifted, "camera: attribute worldToCamera")) << shifted.err;
+  // The pane reaches to 2/3 about the centre: columns (1 + .25 +- 2/3) * 8, and rows (1 + .125 +- 2/3) * 8.
+  const Image<glm::vec4> out = readOpaque(at("out.exr"), {}).gbuffer.beauty;
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const bool within =
+          x + .5 > 10 - 16 / 3.0 && x + .5 < 10 + 16 / 3.0 && y + .5 > 9 - 16 / 3.0 && y + .5 < 9 + 16 / 3.0;
+      EXPECT_NEAR(out.at(x, y).r, within ? .6f : .2f, 1e-6f) << x << " " << y;
+    }
+  pictureOf(1.5, {.25, -.125});
+  EXPECT_EQ(composite("own.exr").code, 4) << "another focal length is another camera";
 }
 
 }  // namespace

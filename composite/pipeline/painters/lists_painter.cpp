@@ -134,7 +134,9 @@ class ListsPainter : public Painter {
       mixer_->mix(mixed, lists, veil);
       return;
     }
-    const HeldOutRow heldOut = holdOut(lists, *context_.picture.deepOpaque, fogBeside(sample));
+    const HeldOutRow heldOut =
+        holdOut(lists, *context_.picture.deepOpaque, fogBeside(sample),
+                mixer_->rule() == VolumeRule::split ? VolumeCuts::atLayers : VolumeCuts::halfWay);
     const Window& entries = heldOut.lists.window;
     if (entries.width() == 0) return;
     Veil row(entries.width(), 1);
