@@ -36,7 +36,7 @@ void MethodFlags::addTo(CLI::App& verb, bool listsToo, UsualMethod usual) {
                         if (takesAuto && text == kAuto) return "";
                         const Method* row = methodNamed(text);
                         if (row && (listsToo || row->isSum)) return "";
-                        return fmt::format("--method: found '{}', expected {}", text, names);
+                        return fmt::format("found '{}', expected {}", text, names);
                       })
                       ->capture_default_str();
   if (takesAuto)

@@ -84,10 +84,11 @@ bool same(const std::variant<Kinds...>& a, const std::variant<Kinds...>& b) {
 }  // namespace
 
 bool sameShot(const ShotRequest& a, const ShotRequest& b) {
-  const auto& [opaque, memory, inputs, read, scene, time, camera, surroundings, colour] = a;
-  const auto& [opaque2, memory2, inputs2, read2, scene2, time2, camera2, surroundings2, colour2] = b;
-  return opaque == opaque2 && memory == memory2 && inputs == inputs2 && same(read, read2) && same(scene, scene2) &&
-         same(time, time2) && same(camera, camera2) && same(surroundings, surroundings2) && same(colour, colour2);
+  const auto& [opaque, memory, rendered, inputs, read, scene, time, camera, surroundings, colour] = a;
+  const auto& [opaque2, memory2, rendered2, inputs2, read2, scene2, time2, camera2, surroundings2, colour2] = b;
+  return opaque == opaque2 && memory == memory2 && rendered == rendered2 && inputs == inputs2 && same(read, read2) &&
+         same(scene, scene2) && same(time, time2) && same(camera, camera2) && same(surroundings, surroundings2) &&
+         same(colour, colour2);
 }
 
 }  // namespace pellucid::python

@@ -140,5 +140,14 @@ TEST(Messages, PlantedPromisesAreFound) {
   EXPECT_EQ(broken("engine_bridge/gl/any.cpp", R"(  // "--no-such-flag")").size(), 0u);
 }
 
+TEST(Messages, FlagsAreNamedOnce) {
+  const Ended method = runProgram({"accumulate", "--method", "moments:4", "a.exr", "b.glb", "-o", "c.exr"});
+  EXPECT_EQ(method.code, 2) << method.err;
+  EXPECT_NE(method.err.find("error: --method: found 'moments:4'"), std::string::npos) << method.err;
+  const Ended folder = runProgram({"study", "a.exr", "b.glb", "-o", ""});
+  EXPECT_EQ(folder.code, 2) << folder.err;
+  EXPECT_NE(folder.err.find("-o: found an empty name, expected a folder"), std::string::npos) << folder.err;
+}
+
 }  // namespace
 }  // namespace pellucid
