@@ -37,6 +37,8 @@ void expectName(const Output& output) {
     throw UsageError(
         fmt::format("{}: found '{}', expected a name that ends in .png: a PNG is written", output.flag, output.path));
   if (output.kind != OutputKind::folder) return;
+  if (output.path.empty())
+    throw UsageError(fmt::format("{}: found an empty name, expected that of a folder", output.flag));
   for (const char* file : {".exr", ".png", ".svg", ".html", ".htm", ".csv", ".json", ".txt"})
     if (extension == file)
       throw UsageError(fmt::format("{}: found '{}', expected the name of a folder: several files are written",

@@ -57,7 +57,6 @@ nlohmann::json jsonOf(const std::vector<StudyRow>& rows, const ColourSpace& spac
 }
 
 void makeFolder(const std::string& folder) {
-  if (folder.empty()) throw UsageError("-o: found an empty name, expected a folder");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw ResourceError(fmt::format("{}: cannot be made: {}", folder, error.message()));

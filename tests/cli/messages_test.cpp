@@ -146,7 +146,7 @@ TEST(Messages, FlagsAreNamedOnce) {
   EXPECT_NE(method.err.find("error: --method: found 'moments:4'"), std::string::npos) << method.err;
   const Ended folder = runProgram({"study", "a.exr", "b.glb", "-o", ""});
   EXPECT_EQ(folder.code, 2) << folder.err;
-  EXPECT_NE(folder.err.find("-o: found an empty name, expected a folder"), std::string::npos) << folder.err;
+  EXPECT_NE(folder.err.find("found an empty name, expected that of a folder"), std::string::npos) << folder.err;
 }
 
 }  // namespace
