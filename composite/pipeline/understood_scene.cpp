@@ -98,6 +98,8 @@ void expectOneCamera(const Shot& shot, const std::string& path) {
     Camera camera = cameraOf(each, gbuffer.display, gbuffer.pixelAspect);
     // A perspective camera of a glTF cannot say that its lens is shifted, so that only the file knows.
     if (!camera.orthographic && !gbuffer.camera->orthographic) camera.centre = gbuffer.camera->centre;
+    // The eyes of a stereo picture stand to the left and right of the one camera that was exported.
+    if (shot.opaque.document.views.size() > 1) camera.viewFromWorld[3].x = gbuffer.camera->viewFromWorld[3].x;
     if (pixelsApart(*gbuffer.camera, camera, gbuffer, z) <= kSamePixels) return;
     others += fmt::format("{}{} as {}", others.empty() ? "" : ", ", viewText(camera), camera.origin);
   }

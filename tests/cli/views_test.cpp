@@ -35,7 +35,7 @@ class Views : public ::testing::Test {
       std::memcpy(channel.bytes.data() + i * sizeof value, &value, sizeof value);
     return channel;
   }
-  static NewExr viewPart(const std::string& view, double eye, bool withCamera) {
+  static NewExr viewPart(const std::string& view, double eye, bool withCamera, double above = 0.0) {
     NewExr part;
     part.part = "rgba." + view;
     part.display = part.data = {0, 0, kViewSize, kViewSize};
@@ -46,6 +46,7 @@ class Views : public ::testing::Test {
     Camera camera;
     camera.focal = {2, 2};
     camera.viewFromWorld[3].x = -eye;
+    camera.viewFromWorld[3].y = -above;
     float matrices[2][4][4];
     cameraToExr(camera, matrices[0], matrices[1]);
     part.matrices["worldToCamera"].assign(&matrices[0][0][0], &matrices[0][0][0] + 16);
@@ -83,6 +84,16 @@ TEST_F(Views, EachByTheCameraOfItsPart) {
   stereo("stereo.exr", true);
   expectTheSame({"--view", "all", "--layers", "transparent"}, {"--view", "left", "--layers", "transparent"},
                 {"--view", "right", "--layers", "transparent"});
+}
+
+// An exporter writes the one camera between the eyes, the renderer those of both.
+TEST_F(Views, EyesStandBesideTheOneCamera) {
+  writeNewExr(at("stereo.exr"), {viewPart("left", -1.5, true), viewPart("right", 1.5, true)});
+  writeGlb(at("pane.glb"), {Quad{{-.4f, -1, -3}, {.8f, 0, 0}, {0, 2, 0}, unlit(1, 0, 0, .5f)}}, {});
+  expectTheSame({"--view", "all"}, {"--view", "left", "--camera", "picture"},
+                {"--view", "right", "--camera", "picture"});
+  writeNewExr(at("stereo.exr"), {viewPart("left", -1.5, true, 3), viewPart("right", 1.5, true, 3)});
+  EXPECT_EQ(composite("out.exr", {"--view", "all"}).code, 4) << "they stand above it";
 }
 
 TEST_F(Views, EachByTheCameraThatIsNamedForIt) {
