@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gbuffer/depth_plane.h"
+
 namespace pellucid::test {
 namespace {
 
@@ -90,6 +92,11 @@ Vec4 Statements::colourOf(const Face& face) const {
 Vec4 Statements::valueOf(const Shown& shown, const Vec4& behind) const {
   const double passed = (shown.transmission.r + shown.transmission.g + shown.transmission.b) / 3.0;
   return {shown.over(Vec3(behind)), 1.0 - (1.0 - behind.a) * passed};
+}
+
+double Statements::faceDepth(const Face& face, const reference::Ray& ray) const {
+  const bool behind = face.solid >= 0 && picture_.scene().eye.parallel;
+  return reference::depthOfPlane(picture_.scene(), face, ray).value_or(behind ? kAtEye : kNothing);
 }
 
 // By how much the depth of a ball leaves its plane within a pixel.
@@ -196,9 +203,7 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
   std::vector<Column> columns;
   for (const glm::dvec2& place : places_) columns.push_back(picture_.columnAt(x + place.x, y + place.y));
   const double margin = marginOf(columns);
-  const auto depthOf = [&](const Column& column) {
-    return flat ? reference::depthOfPlane(picture_.scene(), face, column.ray).value_or(kNothing) : column.opaque.z;
-  };
+  const auto depthOf = [&](const Column& column) { return flat ? faceDepth(face, column.ray) : column.opaque.z; };
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Vec2 at = Vec2(x, y) + places_[i];
     const Vec4 nominal = valueOf(picture_.shownBefore(columns[i], face, depthOf(columns[i])), behind);

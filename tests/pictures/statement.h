@@ -47,6 +47,9 @@ class Statements {
   };
   Surroundings surroundingsOf(int x, int y) const;
   reference::Vec4 valueOf(const reference::Shown& shown, const reference::Vec4& behind) const;
+  // Of a face that goes on for ever: nothing where it has left the picture, nearer than all where parallel rays meet it
+  // behind the eye, as Pellucid has it.
+  double faceDepth(const reference::Face& face, const reference::Ray& ray) const;
   double bendOf(int x, int y) const;
   double marginOf(const std::vector<reference::Column>& columns) const;
   // What is shown where the face lies between two depths.

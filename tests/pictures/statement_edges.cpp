@@ -75,7 +75,7 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
   const auto takeColumn = [&](const Column& column) {
     for (int side = 0; side < 2; ++side) {
       const Face& face = side == 0 ? own : other;
-      const double z = reference::depthOfPlane(picture_.scene(), face, column.ray).value_or(kNothing);
+      const double z = faceDepth(face, column.ray);
       const double farther = 1.0 + 3.0 * flags_.depthStep();
       takeCuts(column, face, z, z * farther, side == 0 ? ownColour : otherColour, ranges[side]);
     }
@@ -119,8 +119,7 @@ Statement Statements::mixedAt(int x, int y) const {
     meet(sample.opaque);
     // The pixel's own surface goes on beyond where it ends, for passes that take the pixel for one surface.
     const reference::Ray ray = reference::rayThrough(picture_.scene().eye, sample.x, sample.y);
-    if (!flags_.edges)
-      meet({reference::depthOfPlane(picture_.scene(), centre(x, y), ray).value_or(kNothing), centre(x, y)});
+    if (!flags_.edges) meet({faceDepth(centre(x, y), ray), centre(x, y)});
   });
   // Where surfaces end the slope of each may be taken from its neighbours' to either side.
   for (int v = y - 2; v <= y + 2; ++v)
