@@ -50,7 +50,8 @@ function display(v) {
   if (v >= 1) return 255;
   return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
 }
-const state = { left: data.left, right: data.right, split: 0.5, exposure: data.exposure, scale: 0, zoom: 1, x: 0, y: 0 };
+const state = { left: data.left, right: data.right, split: 0.5, exposure: data.exposure, scale: 0, zoom: 1,
+  x: 0, y: 0 };
 const cache = new Map();
 function bitmap(key, width, height, fill) {
   if (cache.has(key)) return cache.get(key);
@@ -188,7 +189,8 @@ function wire() {
   }
   window.onresize = draw;
 }
-window.pellucid = { data, state, draw, valueAt, exposed, programs, ready: Promise.all(data.pictures.map(unpack)).then(() => { wire(); draw(); }) };
+window.pellucid = { data, state, draw, valueAt, exposed, programs,
+  ready: Promise.all(data.pictures.map(unpack)).then(() => { wire(); draw(); }) };
 )JS";
 
 }  // namespace pellucid
