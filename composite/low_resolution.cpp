@@ -11,6 +11,7 @@
 
 #include "composite/denormals.h"
 #include "composite/fold_published.h"
+#include "composite/low_surface.h"
 
 namespace pellucid {
 namespace {
@@ -55,6 +56,7 @@ class Upsampler {
                                                low_.frontZ.at(x, y), low_.info.weight);
     });
     markNear();
+    surface_.emplace(view, texels_, sample);
   }
 
   // Nothing where no texel reaches.
@@ -85,18 +87,19 @@ class Upsampler {
     const glm::vec2 place =
         shading::placeInTexels(glm::vec2(static_cast<float>(x), static_cast<float>(y)), sample_, scale);
     const int cx = static_cast<int>(std::floor(place.x + 0.5f)), cy = static_cast<int>(std::floor(place.y + 0.5f));
-    const float opaqueZ = view_.opaqueZ.at(x, y);
+    const LowSurface::Pixel pixel = surface_->pixel(x, y);
+    const float opaqueZ = pixel.opaqueZ;
     Upsampled up;
     const int tent = static_cast<int>(std::ceil(shading::PLD_UPSAMPLE_TENT));
     eachTexel(cx, cy, tent, [&](int i, int j) {
       const glm::vec2 offset(static_cast<float>(i) - place.x, static_cast<float>(j) - place.y);
-      addTexel(up, i, j, opaqueZ, shading::upsampleShare(offset, opaqueZ, view_.gbuffer.viewZ.at(i, j)));
+      addTexel(up, i, j, pixel, shading::upsampleShare(offset, opaqueZ, view_.gbuffer.viewZ.at(i, j)));
     });
     const float wide = shading::wideWeight(up.sums.share);
     if (wide > 0.0f)
       eachTexel(cx, cy, shading::PLD_UPSAMPLE_REACH, [&](int i, int j) {
         const glm::vec2 offset(static_cast<float>(i) - place.x, static_cast<float>(j) - place.y);
-        addTexel(up, i, j, opaqueZ, shading::wideShare(offset, opaqueZ, view_.gbuffer.viewZ.at(i, j), wide));
+        addTexel(up, i, j, pixel, shading::wideShare(offset, opaqueZ, view_.gbuffer.viewZ.at(i, j), wide));
       });
     return up;
   }
@@ -107,10 +110,10 @@ class Upsampler {
       for (int i = std::max(cx - reach, 0); i <= std::min(cx + reach, texels_.width() - 1); ++i) each(i, j);
   }
 
-  void addTexel(Upsampled& up, int i, int j, float opaqueZ, float share) const {
+  void addTexel(Upsampled& up, int i, int j, const LowSurface::Pixel& pixel, float share) const {
     if (share <= 0.0f) return;
     const shading::LowTexel& texel = texels_.at(i, j);
-    const float before = shading::standingBefore(texel, opaqueZ, view_.gbuffer.viewZ.at(i, j));
+    const float before = surface_->standingBefore(pixel, i, j);
     up.sums = shading::addTexel(up.sums, texel, share, before);
     if (low_.scatters()) scatterTexel(up, i, j, share * before);
   }
@@ -138,13 +141,16 @@ class Upsampler {
   glm::vec2 sample_;
   Image<shading::LowTexel> texels_;
   Image<std::uint8_t> near_;
+  std::optional<LowSurface> surface_;
 };
 
 }  // namespace
 
-LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor) {
+LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor,
+                  const DepthPlanes* planes) {
   LowView view;
   view.factor = factor;
+  view.planes = planes;
   view.opaqueZ = gbuffer.viewZ;
   for (std::size_t i = 0; i < solid.size(); ++i) view.opaqueZ[i] = std::min(view.opaqueZ[i], solid[i].a);
   const int width = (gbuffer.data.width() + factor - 1) / factor,

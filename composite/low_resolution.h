@@ -8,6 +8,7 @@
 #include "composite/probe_lists.h"
 #include "composite/veil.h"
 #include "gbuffer/accum.h"
+#include "gbuffer/depth_plane.h"
 #include "gbuffer/fragments.h"
 #include "gbuffer/gbuffer.h"
 #include "gbuffer/published.h"
@@ -22,12 +23,15 @@ struct LowView {
   int factor = 1;
   GBuffer gbuffer;  // viewZ alone
   Camera camera;
-  Image<float> opaqueZ;  // of the pixels: what stands behind all layers, planar metres
+  Image<float> opaqueZ;                 // of the pixels: what stands behind all layers, planar metres
+  const DepthPlanes* planes = nullptr;  // of all pixels, which tell what touches them; null: surfaces face the eye
 };
 
 //   solid   nearest fragments that hide everything among the layers of full resolution: rgb, planar z
 //   factor  pixels per texel, >= 1
-LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor);
+//   planes  LowView::planes
+LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor,
+                  const DepthPlanes* planes = nullptr);
 
 // What texels become in one pixel: a single layer.
 struct UpsampledLayer {

@@ -165,7 +165,7 @@ TransparentPass* Compositor::triangles() {
 }
 
 const DepthPlanes* Compositor::depthPlanes(const Plan& plan, const Window& area) {
-  if (plan.passes == 1 && !plan.pictureMoves) return nullptr;
+  if (plan.passes == 1 && !plan.pictureMoves && plan.lowResolution == 1) return nullptr;
   // Deep layers belong to whole pixels: they are held out by what lies at the pixel's centre.
   if (shot_->deepOpaque && (plan.pictureMoves || !shot_->deep.empty())) return nullptr;
   return &depth_.planes(shot_->opaque.gbuffer, shot_->camera, area, journal_);

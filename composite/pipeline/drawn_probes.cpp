@@ -150,7 +150,7 @@ void DrawnProbes::listLow(Pass& pass) const {
   const GBuffer& gbuffer = *context_.picture.gbuffer;
   TransparentPass& triangles = *context_.sources.triangles();
   pass.view = lowViewOf(gbuffer, solidsOf(triangles, fullResolutionPart(context_.plan, pass.sample)),
-                        context_.shot.camera, context_.plan.lowResolution);
+                        context_.shot.camera, context_.plan.lowResolution, context_.picture.planes);
   const DrawnOver over(triangles, *pass.view, gbuffer, context_.shot.camera);
   triangles.fragments(lowResolutionPart(pass.sample), [&](const FragmentLists& lists) {
     pass.low.push_back(lists);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "composite/pipeline/shadow_step.h"
+#include "gbuffer/depth_plane.h"
 
 namespace pellucid {
 
@@ -12,6 +13,7 @@ struct LitPicture {
   const GBuffer* gbuffer = nullptr;        // its depth is that of where a pass samples the pixels; it may lack colours
   const GBuffer* centres = nullptr;        // the same picture at pixel centres, where its colours are looked up
   const DeepOpaque* deepOpaque = nullptr;  // null for a flat picture
+  const DepthPlanes* planes = nullptr;     // of the depth at pixel centres, where a pass sees it from there
   const Image<float>* passWeight = nullptr;  // of the pass in each pixel's mean; null: as much as any other
 };
 

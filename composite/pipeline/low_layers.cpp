@@ -48,7 +48,8 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
   triangles.over(*context.picture.centres, context.shot.camera);  // solids are drawn at pixel centres
   const Image<glm::vec4> solids = solidsOf(triangles, fullResolutionPart(context.plan, sample));
   triangles.over(gbuffer, context.shot.camera);
-  const LowView view = lowViewOf(gbuffer, solids, context.shot.camera, context.plan.lowResolution);
+  const LowView view =
+      lowViewOf(gbuffer, solids, context.shot.camera, context.plan.lowResolution, context.picture.planes);
   const PassSettings part = lowResolutionPart(sample);
   const Window& texels = view.gbuffer.data;
   Veil veil(texels.width(), texels.height());

@@ -69,11 +69,13 @@ void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
   }
   ++counted_;
   if (!planes_) return;
+  picture_.planes = nullptr;
   if (samplePlanes_) {
     samplePlanes_->moveTo(sample, movedDeep_);
     moved_.viewZ = movedDeep_.farthest;
   } else if (sameView(camera_, taken_)) {
     planes_->depthAt(sample, part_, moved_.viewZ);
+    picture_.planes = planes_;
   } else {
     moveDepth(sample);
   }

@@ -27,7 +27,8 @@ void countLow(const PassStatistics& low, int factor, PassStatistics& whole) {
 void addLow(const PaintContext& context, const PassSettings& sample, OitPlanes& planes, PassStatistics& statistics) {
   const int factor = context.plan.lowResolution;
   if (factor == 1) return;
-  const LowView view = lowViewOf(*context.picture.gbuffer, planes.solid, context.shot.camera, factor);
+  const LowView view =
+      lowViewOf(*context.picture.gbuffer, planes.solid, context.shot.camera, factor, context.picture.planes);
   const OitPlanes low = lowSums(context, view, sample);
   countLow(context.sources.triangles()->statistics(), factor, statistics);
   addLowResolution(low, view, sample.sample, planes, &statistics.clamps);

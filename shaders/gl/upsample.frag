@@ -63,7 +63,7 @@ LowSums withTexel(LowSums sums, ivec2 at, vec4 depths, float share, float opaque
   texel.depthWeight = opacity.a;
   texel.z = depths.x;
   texel.nearestZ = depths.y;
-  float before = standingBefore(texel, opaque, depths.z);
+  float before = standingBefore(texel, opaque, depths.z, PLD_UPSAMPLE_CONTACT);
 #ifdef SCATTER
   precise float part = share * before;
   scatterTexel(at, part);

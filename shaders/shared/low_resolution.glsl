@@ -60,15 +60,21 @@ PLD_FN LowTexel lowTexelOf(OitSums sums, vec4 solid, float nearestZ, WeightSetti
   return texel;
 }
 
+const float PLD_UPSAMPLE_CONTACT = 1e-4f;  // relative difference in depth that is none, where nothing tells it better
+
 // How much of a texel's layers stands before an opaque pixel that may lie nearer than the depth which the texel was
-// tested against: one half from the nearest to their mean depth, the other from there as far again, or to that depth. [0,1]
-//   opaqueZ, texelOpaqueZ  as for upsampleShare()
-PLD_FN float standingBefore(LowTexel texel, float opaqueZ, float texelOpaqueZ) {
+// tested against: one half from the nearest to their mean depth, the other from there as far again, or to that depth.
+// What touches the pixel's surface stands before it. [0,1]
+//   opaqueZ       of the pixel's surface, at the pixel or, where its plane is known, at the texel
+//   texelOpaqueZ  as for upsampleShare()
+//   contact       relative difference in depth that is none
+PLD_FN float standingBefore(LowTexel texel, float opaqueZ, float texelOpaqueZ, float contact) {
   if (opaqueZ >= texelOpaqueZ) return 1.0f;
-  float least = 1e-4f * texel.z;
+  float least = contact * texel.z;
   precise float front = max(texel.z - texel.nearestZ, least);
   precise float back = max(min(front, texelOpaqueZ - texel.z), least);
-  precise float behind = (opaqueZ - texel.z) / (opaqueZ < texel.z ? front : back);
+  precise float ahead = opaqueZ - texel.z + 2.0f * least;  // a whole `least` before it falls
+  precise float behind = ahead / (ahead < 0.0f ? front : back);
   precise float before = 0.5f + 0.5f * behind;
   return clamp(before, 0.0f, 1.0f);
 }

@@ -23,6 +23,7 @@ constexpr glm::dvec3 kColour{0.2, 0.4, 0.6};
 struct Wall {
   double tilt, distance;  // degrees about an upright axis; metres on the camera's axis
   bool half;
+  double decal = 0.4;  // half of the square's edge, parts of the distance
   double precision() const { return half ? 0x1p-10 : 0x1p-20; }
 };
 
@@ -44,7 +45,7 @@ void writeWall(const std::string& path, const Wall& wall, bool there) {
 
 // A square on the wall; `scale` moves it along the eye's rays.
 void writeDecal(const std::string& path, const Wall& wall, double scale, const nlohmann::json& material) {
-  const double t = wall.tilt * M_PI / 180.0, s = 0.4 * wall.distance;
+  const double t = wall.tilt * M_PI / 180.0, s = wall.decal * wall.distance;
   const glm::dvec3 across(std::cos(t), 0.0, -std::sin(t)), up(0.0, 1.0, 0.0);
   const auto put = [&](const glm::dvec3& v) {
     const glm::dvec3 scaled = v * scale;
@@ -69,6 +70,7 @@ class Contact : public ::testing::Test {
     request.paint = paintOf(method);
     if (auto* samples = std::get_if<PaintSamples>(&request.paint)) samples->settings.samples = 64;
     request.passes = passes;
+    if (low) request.lowResolution.factor = lowFactor;
     return run(request);
   }
   static Image<glm::vec4> run(const Request& request) {
@@ -88,6 +90,7 @@ class Contact : public ::testing::Test {
     EXPECT_GT(farthestApart(on, behind), 0.1) << "there is something to see";
   }
   std::string folder;
+  int lowFactor = LowResolutionRequest::kDefault;
 };
 
 TEST_F(Contact, AtAnyTiltAndDistance) {
@@ -134,6 +137,38 @@ TEST_F(Contact, ByEveryRoute) {
     for (std::size_t i = 0; i < shown[2].size(); ++i)
       for (int c = 0; c < 3; ++c) EXPECT_EQ(shown[2][i][c], static_cast<float>(kColour[c]));
   }
+}
+
+// At low resolution texels are larger than pixels, and a slanted wall goes far within one: layers on it are met where
+// the texel's sample lies. Of the decal the inner pixels, around which it covers all texels that reach them. Behind the
+// wall by more than its corners, which lie on a grid of 1/256 texel, move it. Texels at
+// another depth, beyond the decal, enter with some millionths.
+TEST_F(Contact, AtLowResolution) {
+  for (const double tilt : {0.0, -40.0, 60.0, 75.0})
+    for (const bool half : {false, true})
+      for (const int factor : {2, 4})
+        for (const int passes : {1, 8})
+          for (const char* method : {"over", "phenomenological"}) {
+            const Wall wall{tilt, 5.0, half, 0.8};
+            const int middle = tilt > 0.0 ? 8 : tilt < 0.0 ? 16 : 12;  // where the wall is near
+            SCOPED_TRACE(testing::Message() << tilt << " degrees, half " << half << ", --low-res " << factor
+                                            << ", --aa " << passes << ", " << method);
+            lowFactor = factor;
+            const Image<glm::vec4> on = picture(true, 1.0, wall, method, passes, true);
+            const double slope = std::tan(std::abs(tilt) * M_PI / 180.0) / kContactSize,
+                         scale = 1.0 + 16.0 * wall.precision() + 8.0 * slope * factor / 256.0;
+            const Image<glm::vec4> behind = picture(true, scale, wall, method, passes, true);
+            for (int y = 0; y < kContactSize; ++y)
+              for (int x = 0; x < kContactSize; ++x)
+                for (int c = 0; c < 3; ++c) {
+                  if (tilt * (x + 0.5 - kContactSize / 2) > 0.0) continue;  // there it slants more than in the middle
+                  EXPECT_NEAR(behind.at(x, y)[c], kColour[c], half ? 1e-4 : 1e-6) << x << " " << y;
+                  if (std::abs(x - middle) > 1 || std::abs(y - kContactSize / 2) > 1) continue;
+                  const double shown = 0.5 * glm::dvec3(1.0, 0.5, 0.25)[c] + 0.5 * kColour[c];
+                  EXPECT_NEAR(on.at(x, y)[c], shown, half ? 1e-4 : 1e-5) << x << " " << y;
+                }
+            if (HasFailure()) return;
+          }
 }
 
 }  // namespace
