@@ -11,13 +11,8 @@
 namespace pellucid {
 namespace {
 
-constexpr float kLeastContact = 4e-6f;       // of a depth of 32 bits: texels' mean depths are rounded as well
-constexpr double kCornerGrid = 1.0 / 256.0;  // texels: where the rasteriser puts a layer's corners
-constexpr float kThin = 1e-5f;               // of the depth: between the mean of a layer and its nearest
-
-bool isThin(const shading::LowTexel& texel) {
-  return std::abs(texel.z - texel.nearestZ) <= kThin * texel.z;
-}
+constexpr float kLeastContact = 4e-6f;  // of a depth of 32 bits: texels' mean depths are rounded as well
+const double kCornerGrid = shading::PLD_UPSAMPLE_CORNERS;
 
 // The pixel's plane tells the depth that the pixel has in this pass: neither a solid nor an edge's other surface.
 bool shows(const DepthPlane& plane, glm::dvec2 sample, float opaqueZ, double contact) {
@@ -36,7 +31,7 @@ LowSurface::LowSurface(const LowView& view, const Image<shading::LowTexel>& texe
   own_ = Image<Own>(texels.width(), texels.height());
   tbb::parallel_for(0, own_.height(), [this](int j) {
     for (int i = 0; i < own_.width(); ++i)
-      if (isThin(texels_.at(i, j))) {
+      if (shading::isThinTexel(texels_.at(i, j))) {
         own_.at(i, j) = ownOf(i, j);
         own_.at(i, j).layer = layerOf(i, j);
       }
@@ -48,8 +43,12 @@ glm::dvec2 LowSurface::placeOf(int i, int j) const {
 }
 
 LowSurface::Pixel LowSurface::pixel(int x, int y) const {
-  Pixel pixel{x, y, view_.opaqueZ.at(x, y), {}, false};
-  if (!view_.planes || !std::isfinite(pixel.opaqueZ)) return pixel;
+  Pixel pixel{x, y, view_.opaqueZ.at(x, y), {}, false, {}};
+  if (!std::isfinite(pixel.opaqueZ)) return pixel;
+  if (!view_.planes) {
+    pixel.around = aroundOf(x, y);
+    return pixel;
+  }
   pixel.plane = view_.planes->at(x, y);
   pixel.hasPlane = shows(pixel.plane, sample_, pixel.opaqueZ, static_cast<double>(contact_));
   return pixel;
@@ -74,7 +73,8 @@ std::optional<double> LowSurface::layerSlope(int i, int j, int axis) const {
   PlaneValues values;
   for (int k = -kPlaneReach; k <= kPlaneReach; ++k) {
     const int u = axis == 0 ? i + k : i, v = axis == 0 ? j : j + k;
-    const bool there = u >= 0 && v >= 0 && u < texels_.width() && v < texels_.height() && isThin(texels_.at(u, v));
+    const bool there =
+        u >= 0 && v >= 0 && u < texels_.width() && v < texels_.height() && shading::isThinTexel(texels_.at(u, v));
     values[static_cast<std::size_t>(k + kPlaneReach)] =
         there ? linear(texels_.at(u, v).z) / own : std::numeric_limits<double>::quiet_NaN();
   }
@@ -119,10 +119,32 @@ std::optional<shading::LowTexel> LowSurface::followed(const Pixel& pixel, int i,
   return there;
 }
 
+shading::SurfaceNear LowSurface::aroundOf(int x, int y) const {
+  const auto at = [&](int u, int v) {
+    const bool inside = u >= 0 && v >= 0 && u < view_.opaqueZ.width() && v < view_.opaqueZ.height();
+    return inside ? view_.opaqueZ.at(u, v) : 0.0f;
+  };
+  return shading::surfaceNear(view_.opaqueZ.at(x, y), glm::vec4(at(x - 2, y), at(x - 1, y), at(x + 1, y), at(x + 2, y)),
+                              glm::vec4(at(x, y - 2), at(x, y - 1), at(x, y + 1), at(x, y + 2)));
+}
+
+// As shaders/gl/upsample.frag.
+float LowSurface::beforeAround(const Pixel& pixel, const shading::LowTexel& texel, int i, int j) const {
+  const float pixelsATexel = static_cast<float>(view_.factor);
+  const glm::vec2 place = shading::placeInTexels(glm::vec2(static_cast<float>(pixel.x), static_cast<float>(pixel.y)),
+                                                 glm::vec2(sample_), 1.0f / pixelsATexel);
+  const glm::vec2 offset = (glm::vec2(static_cast<float>(i), static_cast<float>(j)) - place) * pixelsATexel;
+  return shading::standingBefore(texel, shading::surfaceAt(pixel.around, pixel.opaqueZ, offset),
+                                 view_.gbuffer.viewZ.at(i, j),
+                                 shading::surfaceContact(pixel.around, pixelsATexel, offset));
+}
+
 float LowSurface::standingBefore(const Pixel& pixel, int i, int j) const {
   const shading::LowTexel& texel = texels_.at(i, j);
   const float tested = view_.gbuffer.viewZ.at(i, j);
-  if (!pixel.hasPlane || !isThin(texel))
+  if (!view_.planes && std::isfinite(pixel.opaqueZ) && shading::isThinTexel(texel))
+    return beforeAround(pixel, texel, i, j);
+  if (!pixel.hasPlane || !shading::isThinTexel(texel))
     return shading::standingBefore(texel, pixel.opaqueZ, tested, shading::PLD_UPSAMPLE_CONTACT);
   if (const std::optional<shading::LowTexel> there = followed(pixel, i, j))
     return shading::standingBefore(*there, pixel.opaqueZ, std::numeric_limits<float>::infinity(),

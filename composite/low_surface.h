@@ -13,7 +13,8 @@ struct LowView;
 
 class LowSurface {
  public:
-  // All must outlive this. Where LowView::planes is null surfaces are taken to face the eye.
+  // All must outlive this. Where LowView::planes is null the depths around a pixel tell its surface, as in the C
+  // library.
   //   sample  where in pixels and texels both were sampled, (0..1, y down)
   LowSurface(const LowView& view, const Image<shading::LowTexel>& texels, glm::dvec2 sample);
 
@@ -22,7 +23,8 @@ class LowSurface {
     int x, y;       // of the data window
     float opaqueZ;  // planar metres, +inf for sky
     DepthPlane plane;
-    bool hasPlane;  // the pixel shows the surface that its plane tells
+    bool hasPlane;                // the pixel shows the surface that its plane tells
+    shading::SurfaceNear around;  // without planes
   };
   Pixel pixel(int x, int y) const;
 
@@ -41,6 +43,8 @@ class LowSurface {
   Own ownOf(int i, int j) const;
   std::optional<DepthPlane> layerOf(int i, int j) const;
   std::optional<double> layerSlope(int i, int j, int axis) const;
+  shading::SurfaceNear aroundOf(int x, int y) const;
+  float beforeAround(const Pixel& pixel, const shading::LowTexel& texel, int i, int j) const;
   float metAt(const Pixel& pixel, int i, int j) const;
   std::optional<shading::LowTexel> followed(const Pixel& pixel, int i, int j) const;
   float contact(const DepthPlane& plane, double perTexel) const;

@@ -49,7 +49,32 @@ void writeScatterAround(float shares) {
 }
 #endif
 
-LowSums withTexel(LowSums sums, ivec2 at, vec4 depths, float share, float opaque) {
+// 0 outside of the picture.
+float opaqueAt(ivec2 pixel) {
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, textureSize(opaqueZ, 0)))) return 0.0f;
+  float z = texelFetch(opaqueZ, pixel, 0).r;
+#ifndef NO_SOLIDS
+  z = min(z, texelFetch(solid, pixel, 0).a);
+#endif
+  return z;
+}
+
+vec4 opaqueAlong(ivec2 pixel, ivec2 axis) {
+  return vec4(opaqueAt(pixel - 2 * axis), opaqueAt(pixel - axis), opaqueAt(pixel + axis), opaqueAt(pixel + 2 * axis));
+}
+
+SurfaceNear around;  // of the pixel
+
+// A thin layer is compared with the pixel's surface at the texel.
+//   offset  from the pixel's sample to the texel's, texels
+float beforePixel(LowTexel texel, vec2 offset, float opaque, float tested) {
+  if (!(opaque < 3e38f) || !isThinTexel(texel)) return standingBefore(texel, opaque, tested, PLD_UPSAMPLE_CONTACT);
+  float pixelsATexel = 1.0f / texelsAPixel;
+  precise vec2 pixels = offset * pixelsATexel;
+  return standingBefore(texel, surfaceAt(around, opaque, pixels), tested, surfaceContact(around, pixelsATexel, pixels));
+}
+
+LowSums withTexel(LowSums sums, ivec2 at, vec2 offset, vec4 depths, float share, float opaque) {
   if (share <= 0.0f) return sums;
   if (depths.w == 0.0f) {
     sums.share = sums.share + share;  // all that an empty texel adds
@@ -63,7 +88,7 @@ LowSums withTexel(LowSums sums, ivec2 at, vec4 depths, float share, float opaque
   texel.depthWeight = opacity.a;
   texel.z = depths.x;
   texel.nearestZ = depths.y;
-  float before = standingBefore(texel, opaque, depths.z, PLD_UPSAMPLE_CONTACT);
+  float before = beforePixel(texel, offset, opaque, depths.z);
 #ifdef SCATTER
   precise float part = share * before;
   scatterTexel(at, part);
@@ -76,10 +101,8 @@ void main() {
   diffuseZAround = intBitsToFloat(0x7f800000);
 #endif
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  float opaque = texelFetch(opaqueZ, pixel, 0).r;
-#ifndef NO_SOLIDS
-  opaque = min(opaque, texelFetch(solid, pixel, 0).a);
-#endif
+  float opaque = opaqueAt(pixel);
+  around = surfaceNear(opaque, opaqueAlong(pixel, ivec2(1, 0)), opaqueAlong(pixel, ivec2(0, 1)));
   vec2 place = placeInTexels(vec2(pixel), vec2(0.5f), texelsAPixel);
   ivec2 centre = ivec2(floor(place + vec2(0.5f)));
   ivec2 last = texelCount - 1;
@@ -90,16 +113,16 @@ void main() {
   for (int j = first.y; j <= end.y; ++j)
     for (int i = first.x; i <= end.x; ++i) {
       vec4 depths = texelFetch(depthTexels, ivec2(i, j), 0);
-      float share = upsampleShare(vec2(float(i), float(j)) - place, opaque, depths.z);
-      sums = withTexel(sums, ivec2(i, j), depths, share, opaque);
+      vec2 offset = vec2(float(i), float(j)) - place;
+      sums = withTexel(sums, ivec2(i, j), offset, depths, upsampleShare(offset, opaque, depths.z), opaque);
     }
   float wide = wideWeight(sums.share);
   if (wide > 0.0f)
     for (int j = max(centre.y - PLD_UPSAMPLE_REACH, 0); j <= min(centre.y + PLD_UPSAMPLE_REACH, last.y); ++j)
       for (int i = max(centre.x - PLD_UPSAMPLE_REACH, 0); i <= min(centre.x + PLD_UPSAMPLE_REACH, last.x); ++i) {
         vec4 depths = texelFetch(depthTexels, ivec2(i, j), 0);
-        float share = wideShare(vec2(float(i), float(j)) - place, opaque, depths.z, wide);
-        sums = withTexel(sums, ivec2(i, j), depths, share, opaque);
+        vec2 offset = vec2(float(i), float(j)) - place;
+        sums = withTexel(sums, ivec2(i, j), offset, depths, wideShare(offset, opaque, depths.z, wide), opaque);
       }
   LowLayer layer = lowLayerOf(sums);
   bool bends = false;

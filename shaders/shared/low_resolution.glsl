@@ -62,6 +62,76 @@ PLD_FN LowTexel lowTexelOf(OitSums sums, vec4 solid, float nearestZ, WeightSetti
 
 const float PLD_UPSAMPLE_CONTACT = 1e-4f;  // relative difference in depth that is none, where nothing tells it better
 
+const float PLD_UPSAMPLE_CORNERS = 1.0f / 256.0f;  // texels: the grid on which a rasteriser puts corners
+
+// How a pixel's opaque surface goes on around it, as the depths around tell.
+struct SurfaceNear {
+  vec2 change;   // per pixel of what is linear, as a part of its value at the pixel
+  vec2 bend;     // of that, per pixel
+  bool inverse;  // 1/z is linear, as with perspective; else z
+};
+
+// Change and bend along one axis, of the three neighbours in a row that bend least; a bend of 1 where none go on, neither
+// straight nor with one bend.
+//   around  2 and 1 pixels before, 1 and 2 after, as parts of the pixel's own value
+PLD_FN vec2 changeAlong(vec4 around) {
+  precise float left = around.x - 2.0f * around.y + 1.0f;
+  precise float middle = around.y - 2.0f + around.z;
+  precise float right = 1.0f - 2.0f * around.z + around.w;
+  precise float across = 0.5f * (around.z - around.y);
+  vec2 found = vec2(across, abs(middle));
+  if (abs(left) < found.y) found = vec2(1.0f - around.y, abs(left));
+  if (abs(right) < found.y) found = vec2(around.z - 1.0f, abs(right));
+  bool straight = found.y <= 0.25f * abs(found.x) + 2e-6f;
+  bool round_ = min(abs(left - middle), abs(right - middle)) <= 0.5f * abs(middle) && abs(middle) < 0.01f;
+  return straight || round_ ? found : vec2(0.0f, 1.0f);
+}
+
+//   depths  planar metres; 0 outside of the picture
+PLD_FN vec4 partsOf(float own, vec4 depths, bool inverse) {
+  vec4 parts = vec4(0.0f);
+  for (int i = 0; i < 4; ++i) {
+    bool there = depths[i] > 0.0f;
+    precise float part = inverse ? own / depths[i] : depths[i] / own;
+    parts[i] = there ? min(part, 1e6f) : 1e6f;
+  }
+  return parts;
+}
+
+//   own     of the pixel, planar metres, finite
+//   across  2 and 1 pixels before, 1 and 2 after, as partsOf(); down: the same along the other axis
+PLD_FN SurfaceNear surfaceNear(float own, vec4 across, vec4 down) {
+  vec2 ax = changeAlong(partsOf(own, across, true)), ay = changeAlong(partsOf(own, down, true));
+  vec2 bx = changeAlong(partsOf(own, across, false)), by = changeAlong(partsOf(own, down, false));
+  SurfaceNear surface;
+  surface.inverse = ax.y + ay.y <= bx.y + by.y;
+  vec2 x = surface.inverse ? ax : bx, y = surface.inverse ? ay : by;
+  surface.change = vec2(x.x, y.x);
+  surface.bend = vec2(x.y < 1.0f ? x.y : 0.0f, y.y < 1.0f ? y.y : 0.0f);
+  return surface;
+}
+
+// Its depth at an offset in pixels. Planar metres, up to 3e38 beyond its horizon.
+PLD_FN float surfaceAt(SurfaceNear surface, float own, vec2 offset) {
+  precise float linear = 1.0f + surface.change.x * offset.x + surface.change.y * offset.y;
+  precise float z = surface.inverse ? own / linear : own * linear;
+  return linear > 0.0f ? min(z, 3e38f) : surface.inverse ? 3e38f : 0.0f;
+}
+
+// Relative difference in depth that is none there: what is rounded, what the corners' grid moves, and what bends away.
+//   factor  pixels per texel
+PLD_FN float surfaceContact(SurfaceNear surface, float factor, vec2 offset) {
+  precise float grid = (abs(surface.change.x) + abs(surface.change.y)) * factor * PLD_UPSAMPLE_CORNERS;
+  precise float away = surface.bend.x * offset.x * offset.x + surface.bend.y * offset.y * offset.y;
+  precise float contact = PLD_UPSAMPLE_CONTACT + grid + away;
+  return contact;
+}
+
+// Whether a texel holds one thin layer, and does not fill in depth as smoke does.
+PLD_FN bool isThinTexel(LowTexel texel) {
+  return abs(texel.z - texel.nearestZ) <= 1e-5f * texel.z;
+}
+
 // How much of a texel's layers stands before an opaque pixel that may lie nearer than the depth which the texel was
 // tested against: one half from the nearest to their mean depth, the other from there as far again, or to that depth.
 // What touches the pixel's surface stands before it. [0,1]
