@@ -10,8 +10,9 @@
 #include <optional>
 
 #include "composite/denormals.h"
+#include "composite/fold.h"
 #include "composite/fold_published.h"
-#include "composite/low_surface.h"
+#include "composite/low_runs.h"
 
 namespace pellucid {
 namespace {
@@ -46,10 +47,7 @@ struct Upsampled {
 class Upsampler {
  public:
   Upsampler(const OitPlanes& low, const LowView& view, glm::dvec2 sample)
-      : low_(low),
-        view_(view),
-        sample_(static_cast<float>(sample.x), static_cast<float>(sample.y)),
-        texels_(low.data.width(), low.data.height()) {
+      : low_(low), view_(view), shares_(view, sample), texels_(low.data.width(), low.data.height()) {
     eachRow(texels_.height(), [this](int y) {
       for (int x = 0; x < texels_.width(); ++x)
         texels_.at(x, y) = shading::lowTexelOf(shading::unpackSums(low_.at(x, y)), low_.solid.at(x, y),
@@ -79,39 +77,17 @@ class Upsampler {
     for (int y = 0; y < texels_.height(); ++y)
       for (int x = 0; x < texels_.width(); ++x)
         if (low_.weight.at(x, y).a > 0.0f || low_.solid.at(x, y).a < INFINITY)
-          eachTexel(x, y, shading::PLD_UPSAMPLE_REACH + 1, [this](int i, int j) { near_.at(i, j) = 1; });
+          shares_.texels(x, y, shading::PLD_UPSAMPLE_REACH + 1, [this](int i, int j) { near_.at(i, j) = 1; });
   }
 
   Upsampled around(int x, int y) const {
-    const float scale = 1.0f / static_cast<float>(view_.factor);
-    const glm::vec2 place =
-        shading::placeInTexels(glm::vec2(static_cast<float>(x), static_cast<float>(y)), sample_, scale);
-    const int cx = static_cast<int>(std::floor(place.x + 0.5f)), cy = static_cast<int>(std::floor(place.y + 0.5f));
     const LowSurface::Pixel pixel = surface_->pixel(x, y);
-    const float opaqueZ = pixel.opaqueZ;
     Upsampled up;
-    const int tent = static_cast<int>(std::ceil(shading::PLD_UPSAMPLE_TENT));
-    eachTexel(cx, cy, tent, [&](int i, int j) {
-      const glm::vec2 offset(static_cast<float>(i) - place.x, static_cast<float>(j) - place.y);
-      addTexel(up, i, j, pixel, shading::upsampleShare(offset, opaqueZ, view_.gbuffer.viewZ.at(i, j)));
-    });
-    const float wide = shading::wideWeight(up.sums.share);
-    if (wide > 0.0f)
-      eachTexel(cx, cy, shading::PLD_UPSAMPLE_REACH, [&](int i, int j) {
-        const glm::vec2 offset(static_cast<float>(i) - place.x, static_cast<float>(j) - place.y);
-        addTexel(up, i, j, pixel, shading::wideShare(offset, opaqueZ, view_.gbuffer.viewZ.at(i, j), wide));
-      });
+    shares_.around(x, y, [&](int i, int j, float share) { addTexel(up, i, j, pixel, share); });
     return up;
   }
 
-  template <class Each>
-  void eachTexel(int cx, int cy, int reach, const Each& each) const {
-    for (int j = std::max(cy - reach, 0); j <= std::min(cy + reach, texels_.height() - 1); ++j)
-      for (int i = std::max(cx - reach, 0); i <= std::min(cx + reach, texels_.width() - 1); ++i) each(i, j);
-  }
-
   void addTexel(Upsampled& up, int i, int j, const LowSurface::Pixel& pixel, float share) const {
-    if (share <= 0.0f) return;
     const shading::LowTexel& texel = texels_.at(i, j);
     const float before = surface_->standingBefore(pixel, i, j);
     up.sums = shading::addTexel(up.sums, texel, share, before);
@@ -138,7 +114,7 @@ class Upsampler {
 
   const OitPlanes& low_;
   const LowView& view_;
-  glm::vec2 sample_;
+  LowShares shares_;
   Image<shading::LowTexel> texels_;
   Image<std::uint8_t> near_;
   std::optional<LowSurface> surface_;
@@ -324,12 +300,35 @@ LowResolutionFragments::LowResolutionFragments(const OitPlanes& low, const LowVi
 }
 
 template <class PlaceOf>
+std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const FragmentLists& lists,
+                                                                     const PlaceOf& placeOf) const {
+  std::vector<std::vector<Fragment>> all(lists.solid.size());
+  if (!runs_ || scatters_) return all;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 64), [&](const auto& pixels) {
+    std::vector<float> depths;
+    for (std::size_t pixel = pixels.begin(); pixel != pixels.end(); ++pixel) {
+      const std::optional<glm::ivec2> at = placeOf(pixel);
+      if (!at || !isThere(fragments_.at(at->x, at->y))) continue;
+      depths.clear();
+      for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
+        if (takesPart(lists.fragments[i], lists.solid[pixel])) depths.push_back(lists.fragments[i].z);
+      if (depths.empty()) continue;
+      std::sort(depths.begin(), depths.end());
+      depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+      runs_->between(at->x, at->y, depths, kLowIdentity, all[pixel]);
+    }
+  });
+  return all;
+}
+
+template <class PlaceOf>
 FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const {
   FragmentLists result;
   result.window = lists.window;
   result.solid = lists.solid;
   result.offsets.assign(1, 0);
   const bool disperses = lists.disperses() || !dispersion_.empty();
+  const std::vector<std::vector<Fragment>> runs = runsAmong(lists, placeOf);
   for (std::size_t pixel = 0; pixel < lists.solid.size(); ++pixel) {
     const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
                end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
@@ -339,7 +338,11 @@ FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, con
                                lists.dispersion.begin() + end);
     if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
     const std::optional<glm::ivec2> at = placeOf(pixel);
-    if (at && isThere(fragments_.at(at->x, at->y)) && fragments_.at(at->x, at->y).z <= lists.solid[pixel].a) {
+    if (!runs[pixel].empty()) {
+      for (const Fragment& run : runs[pixel])
+        if (run.z <= lists.solid[pixel].a) result.fragments.push_back(run);
+      if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
+    } else if (at && isThere(fragments_.at(at->x, at->y)) && fragments_.at(at->x, at->y).z <= lists.solid[pixel].a) {
       result.fragments.push_back(fragments_.at(at->x, at->y));
       if (disperses) result.dispersion.push_back(dispersion_.empty() ? glm::vec4(0.0f) : dispersion_.at(at->x, at->y));
     }

@@ -4,6 +4,8 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "composite/probe_lists.h"
 #include "composite/veil.h"
@@ -67,10 +69,15 @@ void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 samp
 //   scatter  what refracts and diffuses in it, or null
 OitPlanes planesOfVeil(const Veil& veil, const Image<float>& meanZ, const LowView& view, const OitPlanes* scatter);
 
+class LowRuns;
+
 // The upsampled layers of a whole picture as fragments, for lists. Empty where there is none.
 class LowResolutionFragments {
  public:
   LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample, const Window& data);
+  // From now on a pixel has them in runs, between its layers, instead of as one. Not where they scatter, which is told
+  // of all together.
+  void cutByLayers(std::shared_ptr<const LowRuns> runs) { runs_ = std::move(runs); }
   // Adds them to lists of a window inside of the data window; those behind a pixel's solid are left out.
   FragmentLists among(const FragmentLists& lists) const;
   // The same for lists of a window of their own, whose pixels lie in `places`.
@@ -80,11 +87,15 @@ class LowResolutionFragments {
  private:
   template <class PlaceOf>
   FragmentLists amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const;
+  // By pixel of the lists; nothing where they are one layer.
+  template <class PlaceOf>
+  std::vector<std::vector<Fragment>> runsAmong(const FragmentLists& lists, const PlaceOf& placeOf) const;
 
   Window data_;
   Image<Fragment> fragments_;  // coverage 0 and no radiance where there is none
   Image<glm::vec4> dispersion_;
   bool scatters_ = false;
+  std::shared_ptr<const LowRuns> runs_;
 };
 
 }  // namespace pellucid

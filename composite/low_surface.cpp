@@ -31,9 +31,9 @@ LowSurface::LowSurface(const LowView& view, const Image<shading::LowTexel>& texe
   own_ = Image<Own>(texels.width(), texels.height());
   tbb::parallel_for(0, own_.height(), [this](int j) {
     for (int i = 0; i < own_.width(); ++i)
-      if (shading::isThinTexel(texels_.at(i, j))) {
+      if (texels_.at(i, j).nearestZ < std::numeric_limits<float>::infinity()) {
         own_.at(i, j) = ownOf(i, j);
-        own_.at(i, j).layer = layerOf(i, j);
+        if (shading::isThinTexel(texels_.at(i, j))) own_.at(i, j).layer = layerOf(i, j);
       }
   });
 }
@@ -139,8 +139,7 @@ float LowSurface::beforeAround(const Pixel& pixel, const shading::LowTexel& texe
                                  shading::surfaceContact(pixel.around, pixelsATexel, offset));
 }
 
-float LowSurface::standingBefore(const Pixel& pixel, int i, int j) const {
-  const shading::LowTexel& texel = texels_.at(i, j);
+float LowSurface::standingBefore(const Pixel& pixel, int i, int j, const shading::LowTexel& texel) const {
   const float tested = view_.gbuffer.viewZ.at(i, j);
   if (!view_.planes && std::isfinite(pixel.opaqueZ) && shading::isThinTexel(texel))
     return beforeAround(pixel, texel, i, j);

@@ -31,7 +31,9 @@ class LowSurface {
   // How much of a texel's layers stands before the pixel's surface, [0,1]. A thin layer is followed along its plane to
   // the pixel or, where its neighbours do not tell that, compared with the surface at the texel's sample; what fills a
   // texel in depth, as smoke does, is compared with the pixel's own depth.
-  float standingBefore(const Pixel& pixel, int i, int j) const;
+  float standingBefore(const Pixel& pixel, int i, int j) const { return standingBefore(pixel, i, j, texels_.at(i, j)); }
+  // Of some layers of that texel: z and nearestZ are read.
+  float standingBefore(const Pixel& pixel, int i, int j, const shading::LowTexel& texel) const;
 
  private:
   struct Own {
@@ -53,7 +55,7 @@ class LowSurface {
   const Image<shading::LowTexel>& texels_;
   glm::dvec2 sample_;
   float contact_;
-  Image<Own> own_;  // of thin texels
+  Image<Own> own_;
 };
 
 }  // namespace pellucid

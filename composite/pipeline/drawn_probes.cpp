@@ -45,6 +45,7 @@ class TexelMixer : public Mixer {
       compositeSorted(lists, mixed.data, veil);
   }
   void mixTexels(const Mixed& mixed, const FragmentLists& lists, Veil& veil) override { mix(mixed, lists, veil); }
+  bool cutsTexels() const override { return !method_; }
 
  private:
   std::optional<ChosenMethod> method_;

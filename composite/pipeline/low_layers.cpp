@@ -4,6 +4,7 @@
 
 #include "composite/fold.h"
 #include "composite/list_order.h"
+#include "composite/low_runs.h"
 #include "composite/pipeline/sums.h"
 
 namespace pellucid {
@@ -55,6 +56,7 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
   Veil veil(texels.width(), texels.height());
   Image<float> meanZ(texels.width(), texels.height(), 0.0f);
   OitPlanes scatter = emptyPlanes(texels, texels);
+  const std::shared_ptr<LowRuns> runs = mixer.cutsTexels() ? std::make_shared<LowRuns>(view, sample.sample) : nullptr;
   {
     const DrawnOver over(triangles, view, gbuffer, context.shot.camera);
     triangles.fragments(part, [&](const FragmentLists& given) {
@@ -63,11 +65,16 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
       foldScattering(lists, scatter);
       meanDepths(lists, meanZ);
       mixer.mixTexels({part, pass, texels}, lists, veil);
+      if (runs) runs->add(lists);
     });
     statistics = triangles.statistics();
   }
   const OitPlanes low = planesOfVeil(veil, meanZ, view, scatter.scatters() ? &scatter : nullptr);
-  return LowResolutionFragments(low, view, sample.sample, gbuffer.data);
+  LowResolutionFragments result(low, view, sample.sample, gbuffer.data);
+  if (!runs || result.scatters()) return result;
+  runs->finish();
+  result.cutByLayers(runs);
+  return result;
 }
 
 }  // namespace pellucid

@@ -23,7 +23,7 @@ std::map<std::string, int> calls;
 }  // namespace
 
 // Under a sanitizer memory is its own; operator new says enough there.
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
@@ -264,7 +264,7 @@ TEST(BridgeSteady, DrawsKeepTheirFencesOnLlvmpipe) {
 
 // The counter sees an allocation that a call does make.
 TEST(BridgeSteady, TheCounterSeesAllocations) {
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   GlContext context;
   Host host(16, 16);
   pld_pass* pass = host.create(host.info());

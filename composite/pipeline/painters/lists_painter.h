@@ -31,6 +31,7 @@ class Mixer {
   virtual bool fogBeside(const Fog&) const { return false; }  // it adds fog itself, where a row is mixed
   // Composites what is drawn at low resolution, of the view's window.
   virtual void mixTexels(const Mixed& mixed, const FragmentLists& lists, Veil& veil);
+  virtual bool cutsTexels() const { return false; }  // those are cut into runs by the layers of full resolution
   // Depth and colour alone are read, in any blocks: lean lists will do.
   virtual bool takesLean() const { return false; }
   virtual void mixLean(const LeanLists& lists, const Window& data, Veil& veil);

@@ -24,6 +24,7 @@ class SamplesMixer : public Mixer {
     else
       mean_->add(mixed.pass, lists, mixed.data, veil, picture_.passWeight);
   }
+  bool cutsTexels() const override { return true; }
   void finish(Veil& mean) override {
     mean_->finish(mean);
     if (settings_.adaptive <= 0.0 || mean_->pixelsSampled() == 0) return;

@@ -12,6 +12,7 @@ class SortedMixer : public Mixer {
   }
   VolumeRule rule() const override { return VolumeRule::split; }
   bool exactScatter() const override { return true; }
+  bool cutsTexels() const override { return true; }
   bool takesLean() const override { return true; }
 };
 

@@ -28,6 +28,7 @@ class WithinMixer : public Mixer {
     return holds;
   }
   VolumeRule rule() const override { return VolumeRule::split; }
+  bool cutsTexels() const override { return true; }
   bool exactScatter() const override { return true; }  // lookups are those of the truth, to the bit
 
  private:

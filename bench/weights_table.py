@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+"""Which listed weight errs least where nothing can be fitted: what engines and planes are told to take.
+
+  weights_table.py PELLUCID SAMPLES WORKDIR [HEIGHT]
+
+Every sample is composited by the phenomenological sums with each listed weight at 10^-3, 1 and 10^3 times its size, and
+with the fitted one. Weights that read a range get that of the scene's transparent things, as an engine's camera knows
+it, rounded out by a tenth; the papers' constants stay in metres. A row is the mean error over that of the best listed
+weight on the same sample, size by size, as the geometric mean of all samples, and at worst.
+"""
+import math, re, subprocess, sys
+from pathlib import Path
+
+WEIGHTS = ["eq5", "eq7", "eq8", "eq9", "eq10", "eq7z", "eq8z", "eq9z", "eq10z", "uniform", "fig1", "fig6", "fig10:0.01",
+           "linear"] + [f"power:{k}" for k in (1, 2, 3, 4, 6, 8, 12, 16, 32)]
+SAMPLES = ["bars", "bottles", "smoke", "foliage", "frosted", "ball", "hair", "cad", "clouds", "street", "mixed",
+           "smokeball", "shafts", "shadows", "chess"]
+RANGED = {"eq5", "eq10", "eq10z", "linear"}
+SIZES = [1e-3, 1.0, 1e3]
+LEAST = 1e-6  # of an error: below it no weight is better than another
+
+
+def measured(program, stem, size, flags):
+    words = [program, "composite", f"{stem}.exr", f"{stem}.glb", "-o", f"{stem}-out.exr", "--method", "phenomenological",
+             "--measure", "--aa", "1", "--unit", repr(size), "--scene-unit", repr(size), *flags]
+    ended = subprocess.run(words, capture_output=True, text=True)
+    if ended.returncode != 0:
+        sys.exit(f"{' '.join(words)}: ended with {ended.returncode}: {ended.stderr}")
+    return ended
+
+
+def error_of(ended):
+    return float(re.search(r"sorted over: mean ([0-9.e+-]+)", ended.stdout + ended.stderr).group(1))
+
+
+def main():
+    program, samples, folder = str(Path(sys.argv[1]).resolve()), sys.argv[2], Path(sys.argv[3])
+    height = sys.argv[4] if len(sys.argv) > 4 else "135"
+    folder.mkdir(parents=True, exist_ok=True)
+    logs = {weight: [] for weight in ["auto"] + WEIGHTS}
+    for sample in SAMPLES:
+        subprocess.run([samples, str(folder), sample, height], check=True, stdout=subprocess.DEVNULL)
+        for size in SIZES:
+            fitted = measured(program, folder / sample, size, ["--weight", "auto"])
+            near, far = re.search(r"([0-9.e+-]+) to ([0-9.e+-]+) m away", fitted.stderr).groups()
+            scale = ["--weight-range", f"{float(near) / 1.1!r}:{float(far) * 1.1!r}"]
+            errors = {}
+            for weight in WEIGHTS:
+                flags = ["--weight", weight] + (scale if weight in RANGED else [])
+                errors[weight] = max(error_of(measured(program, folder / sample, size, flags)), LEAST)
+            best = min(errors.values())
+            errors["auto"] = max(error_of(fitted), LEAST)
+            for weight, error in errors.items():
+                logs[weight].append(math.log(error / best))
+    print("| weight | error over the best listed one's | at worst |\n| --- | --- | --- |")
+    for weight, values in sorted(logs.items(), key=lambda row: sum(row[1])):
+        print(f"| `{weight}` | {math.exp(sum(values) / len(values)):.2f} | {math.exp(max(values)):.2f} |")
+
+
+if __name__ == "__main__":
+    main()
