@@ -58,11 +58,13 @@ bool castsInto(Casters kind, const Material& material) {
 Bounds casterBounds(const Scene& scene, Casters kind, const glm::dmat4& toSpace, double& farthest) {
   Bounds bounds;
   double squared = 0.0;
-  forEachCorner(
+  forEachReach(
       scene, toSpace, [&](const Material& material) { return castsInto(kind, material); },
-      [&](const Instance&, const glm::dvec3& point) {
-        bounds.add(point);
-        squared = std::max(squared, glm::dot(point, point));
+      [&](const Instance&, const glm::dvec3&, const glm::dvec3& middle, double reach) {
+        bounds.add(middle - reach);
+        bounds.add(middle + reach);
+        const double away = glm::length(middle) + reach;
+        squared = std::max(squared, away * away);
       });
   farthest = std::sqrt(squared);
   return bounds;
