@@ -23,20 +23,20 @@ double storedPrecision(const ExrPart& part, const ExrChannel& depth) {
   return part.compression == "pxr24" ? 0x1p-14 : 0x1p-20;
 }
 
-// A step of window depth at the median distance, relative to that distance: z = n f / (f - d (f - n)), so
-// dz / z = z (1/n - 1/f) dd.
-float devicePrecision(const Image<float>& viewZ, const Camera& camera, PixelType type) {
+// A step of the stored number near 1, relative to the depth that it moves. Of window depth that step grows with
+// distance, z = n f / (f - d (f - n)) and so dz / z = z (1/n - 1/f) dd, and is taken at the median. Where it is a
+// length, it counts most for what is near: there one pixel in twenty is nearer than where it is taken.
+double stepPrecision(const Image<float>& viewZ, const DepthConverter& convert, PixelType type) {
+  if (convert.stretch(1.0) == 0.0) return 0.0;
   std::vector<float> finite;
   for (std::size_t i = 0; i < viewZ.size(); ++i)
     if (std::isfinite(viewZ[i])) finite.push_back(viewZ[i]);
-  if (finite.empty()) return 0.0f;
-  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-  std::nth_element(finite.begin(), middle, finite.end());
+  if (finite.empty()) return 0.0;
+  const bool isLength = convert.stretch(2.0) < convert.stretch(1.0);
+  const auto chosen = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / (isLength ? 20 : 2));
+  std::nth_element(finite.begin(), chosen, finite.end());
   const double step = type == PixelType::half ? 0x1p-10 : 0x1p-22;  // twice half an ulp at 1, and as much again
-  const double slope = camera.orthographic
-                           ? (camera.rangeFar - camera.rangeNear) / static_cast<double>(*middle)
-                           : static_cast<double>(*middle) * (1.0 / camera.rangeNear - 1.0 / camera.rangeFar);
-  return static_cast<float>(step * slope);
+  return step * convert.stretch(static_cast<double>(*chosen));
 }
 
 // Where nobody said what the numbers mean, the numbers have a say.
@@ -166,8 +166,8 @@ void convertDepth(const ExrPart& part, const ExrChannel& depth, const DepthKind&
   });
   for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i)
     if (!std::isfinite(gbuffer.viewZ[i])) ++file.choice.farPixels;
-  gbuffer.depthPrecision = kind.meaning == DepthMeaning::device ? devicePrecision(gbuffer.viewZ, *camera, depth.type)
-                                                                : static_cast<float>(storedPrecision(part, depth));
+  gbuffer.depthPrecision =
+      static_cast<float>(std::max(storedPrecision(part, depth), stepPrecision(gbuffer.viewZ, convert, depth.type)));
   noteOddities(depth, firstX, firstY, file);
 }
 
