@@ -293,6 +293,19 @@ TEST_F(DeepVerbs, FragmentsReadBackGiveTheSamePicture) {
   EXPECT_GT(difference("direct.exr", "opaque.exr"), .05);  // there was something to see
 }
 
+// What is said of the picture's depth is not said of fragments, which are planar whatever it is.
+TEST_F(DeepVerbs, FragmentsArePlanarWhateverThePicturesDepthIs) {
+  run({"composite", "opaque.exr", "glass.glb", "-o", "direct.exr", "--aa", "1"});
+  const std::pair<float, std::string> depths[] = {
+      {-10.0f, "negative"}, {0.1f, "inverse"}, {0.75f, "normalised:0:40:inverted"}, {-0.1f, "inverse:negative"}};
+  for (const auto& [depth, kind] : depths) {
+    writeOpaque(folder + "/said.exr", {.depth = depth});
+    run({"fragments", "said.exr", "glass.glb", "-o", "deep.exr", "--depth-kind", kind});
+    run({"composite", "said.exr", "deep.exr", "-o", "viadeep.exr", "--aa", "1", "--depth-kind", kind});
+    EXPECT_LE(difference("direct.exr", "viadeep.exr"), 1e-6) << kind;
+  }
+}
+
 TEST_F(DeepVerbs, SmokeInADeepFileMeetsGlassExactly) {
   // A volume from 2 to 6 m, the glass at about 3.5 m inside it: the front part lies over the glass, the rest under it.
   DeepRows rows;
