@@ -10,6 +10,20 @@
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
+namespace {
+
+// A value without a letter is a variable that a script has not set. Only a layer may have no name.
+void expectValues(CLI::App& app) {
+  const auto notEmpty = [](std::string& value) {
+    return std::string(value.empty() ? "found '', expected a value" : "");
+  };
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
+    for (CLI::Option* option : verb->get_options())
+      if (option->get_items_expected_min() > 0 && option->get_name() != "--layer")
+        option->check(CLI::Validator(notEmpty, ""));
+}
+
+}  // namespace
 
 void addVerbs(CLI::App& app) {
   app.set_version_flag("--version", PELLUCID_VERSION);
@@ -27,6 +41,7 @@ void addVerbs(CLI::App& app) {
   addStudy(app);
   addView(app);
   addHelp(app);
+  expectValues(app);
   checkOutputsFirst(app);
   setUpHelp(app);
 }
