@@ -1,4 +1,11 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <new>
+#include <system_error>
 
 #include "composite/cli/application.h"
 #include "composite/cli/help_groups.h"
@@ -21,6 +28,23 @@ void expectValues(CLI::App& app) {
     for (CLI::Option* option : verb->get_options())
       if (option->get_items_expected_min() > 0 && option->get_name() != "--layer")
         option->check(CLI::Validator(notEmpty, ""));
+}
+
+// Whoever closes a stream wants nothing from it; without this the next file that is opened would be that stream.
+void openStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) == -1 && ::open("/dev/null", O_RDWR) != stream) return;
+}
+
+// What was printed has arrived, or the exit code says that it has not.
+int printed(int code) {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0;
+  const int why = errno;
+  if (flushed && std::ferror(stdout) == 0) return code;
+  sayError(std::string("standard output: cannot be written") +
+           (why == 0 ? "" : std::string(": ") + std::strerror(why)));
+  return code == 0 ? 6 : code;
 }
 
 }  // namespace
@@ -47,6 +71,7 @@ void addVerbs(CLI::App& app) {
 }
 
 int run(int argc, const char* const* argv) {
+  openStreams();
   setUpMessages();
   // Before anything is parsed, so that what cannot be is told in this form too.
   for (int i = 1; i < argc; ++i)
@@ -57,15 +82,18 @@ int run(int argc, const char* const* argv) {
   try {
     checkWords(app, argc, argv);
     app.parse(argc, argv);
-    return 0;
+    return printed(0);
   } catch (const CLI::Success& request) {  // --help, --version
-    return app.exit(request);
+    return printed(app.exit(request));
   } catch (const CLI::ParseError& error) {
     sayError(std::string(error.what()) + " (see pellucid --help)");
     return 2;
   } catch (const Error& error) {
     sayError(error.what());
-    return error.exitCode();
+    return printed(error.exitCode());
+  } catch (const std::system_error& error) {
+    sayError((std::ferror(stdout) != 0 ? "standard output: " : "") + std::string(error.what()));
+    return 6;
   } catch (const std::bad_alloc&) {
     sayError("memory ran out");
     return 6;
