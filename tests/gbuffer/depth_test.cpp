@@ -1,6 +1,7 @@
 // Depth as it is stored: every kind to planar metres, what is said of it, and what is warned of.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "gbuffer/depth_kind.h"
@@ -98,6 +99,23 @@ TEST_F(DepthKinds, PrecisionIsThatOfTheStoredNumbers) {
   const OpaqueFile reversed = readOpaque(folder_.path("reversed.exr"), options, &camera);
   EXPECT_EQ(reversed.gbuffer.depthPrecision, 0x1p-20f);
   EXPECT_LT(worst(reversed), 1e-6);
+}
+
+// Matrices of floats lose of the camera's place what floats of its distance from the origin lose.
+TEST_F(DepthKinds, ACameraFarOffIsAllowedWhatItsMatricesLose) {
+  for (const double metres : {0.0, 20.0, 1e5}) {
+    Room room;
+    room.camera.viewFromWorld[3] = glm::dvec4(0.6 * metres, 0.0, 0.8 * metres, 1.0);
+    Part part = room.part(true);
+    part.planes.push_back(floatPlane("Z", room.depth([](double z, double) { return z; })));
+    const std::string path = folder_.path(std::to_string(metres) + ".exr");
+    writeFile(path, {part});
+    const OpaqueFile file = readOpaque(path, {});
+    std::vector<double> z = room.z;
+    std::nth_element(z.begin(), z.begin() + static_cast<std::ptrdiff_t>(z.size() / 2), z.end());
+    const double lost = 0x1p-23 * metres / z[z.size() / 2];
+    EXPECT_NEAR(static_cast<double>(file.gbuffer.depthPrecision), std::max(lost, 0x1p-20), 1e-3 * lost) << metres;
+  }
 }
 
 TEST_F(DepthKinds, LimitsOfARampAreNothing) {
