@@ -19,14 +19,14 @@
 namespace pellucid::cli {
 namespace {
 
-// A value without a letter is a variable that a script has not set. Only a layer may have no name.
+// A value without a letter is a variable that a script has not set. A layer may have no name; of outputs more is said.
 void expectValues(CLI::App& app) {
   const auto notEmpty = [](std::string& value) {
     return std::string(value.empty() ? "found '', expected a value" : "");
   };
   for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
     for (CLI::Option* option : verb->get_options())
-      if (option->get_items_expected_min() > 0 && option->get_name() != "--layer")
+      if (option->get_items_expected_min() > 0 && option->get_name() != "--layer" && option->get_name() != "--output")
         option->check(CLI::Validator(notEmpty, ""));
 }
 
