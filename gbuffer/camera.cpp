@@ -24,13 +24,6 @@ bool allFinite(const glm::dmat4& m) {
   return true;
 }
 
-double largest(const glm::dmat4& m) {
-  double value = 0;
-  for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r) value = std::max(value, std::abs(m[c][r]));
-  return value;
-}
-
 // In GLM's column-vector form an affine matrix ends with the row (0, 0, 0, 1).
 bool isAffine(const glm::dmat4& m) {
   const glm::dvec4 last = glm::row(m, 3);
@@ -52,21 +45,42 @@ struct Lens {
   double leaning = 0;           // of depth: what x and y add to it, over the divisor
 };
 
-// ndcFromCamera must be one of
+// What float matrices lose of a row of their product: of its first three numbers, and of the fourth, where the camera's
+// place cancels, which may be large.
+struct Slack {
+  double turn = 0, place = 0;
+};
+
+Slack slackOf(const glm::dmat4& ndcFromWorld, int row, const glm::dmat4& worldFromCamera) {
+  constexpr double kUnits = 4.0 * 1.2e-7;  // a few units in the last place of the largest terms that cancel
+  constexpr double kTurns = 1e-5;          // of chains of rotations in floats
+  const glm::dvec4 terms = glm::abs(glm::row(ndcFromWorld, row));
+  const double turn = std::max({terms.x, terms.y, terms.z});
+  const double place = std::max(terms.w, turn * std::max(1.0, glm::length(glm::dvec3(worldFromCamera[3]))));
+  return {std::max(kTurns * turn, 1e-6), std::max({kTurns * turn, kUnits * place, 1e-6})};
+}
+
+// ndcFromWorld * worldFromCamera must be one of
 //   perspective   (sx 0 cx 0) (0 sy cy 0) (any) (0 0 w 0)
 //   orthographic  (sx 0 0 cx) (0 sy 0 cy) (any) (0 0 0 w)
-// up to what float matrices lose, `slack`. Else `found` says what it is instead.
-std::optional<Lens> lensOf(const glm::dmat4& ndcFromCamera, double slack, std::string& found) {
+// up to what float matrices lose. Else `found` says what it is instead.
+std::optional<Lens> lensOf(const glm::dmat4& ndcFromWorld, const glm::dmat4& worldFromCamera, std::string& found) {
+  const glm::dmat4 ndcFromCamera = ndcFromWorld * worldFromCamera;
   const glm::dvec4 x = glm::row(ndcFromCamera, 0), y = glm::row(ndcFromCamera, 1), w = glm::row(ndcFromCamera, 3);
+  const Slack ofX = slackOf(ndcFromWorld, 0, worldFromCamera), ofY = slackOf(ndcFromWorld, 1, worldFromCamera),
+              ofW = slackOf(ndcFromWorld, 3, worldFromCamera);
   Lens lens;
-  lens.orthographic = std::abs(w.w) > std::abs(w.z);
+  lens.orthographic = std::abs(w.z) <= ofW.turn;
   lens.divisor = lens.orthographic ? w.w : w.z;
-  const double rest = std::max({std::abs(w.x), std::abs(w.y), std::abs(lens.orthographic ? w.z : w.w)});
-  const double offAxis = std::max(
-      {std::abs(x.y), std::abs(y.x), std::abs(lens.orthographic ? x.z : x.w), std::abs(lens.orthographic ? y.z : y.w)});
-  if (!(std::abs(lens.divisor) > slack)) {
+  bool along =
+      std::max(std::abs(w.x), std::abs(w.y)) <= ofW.turn && std::abs(x.y) <= ofX.turn && std::abs(y.x) <= ofY.turn;
+  if (lens.orthographic)
+    along = along && std::abs(x.z) <= ofX.turn && std::abs(y.z) <= ofY.turn;
+  else
+    along = along && std::abs(w.w) <= ofW.place && std::abs(x.w) <= ofX.place && std::abs(y.w) <= ofY.place;
+  if (!(std::abs(lens.divisor) > (lens.orthographic ? ofW.place : ofW.turn))) {
     found = "no projection";
-  } else if (rest > slack || offAxis > slack) {
+  } else if (!along) {
     found = "a projection that is not along worldToCamera's z axis";
   } else {
     lens.scale = glm::dvec2(x.x, y.y) / lens.divisor;
@@ -110,10 +124,8 @@ std::optional<Reading> readAs(const glm::dmat4& worldToCamera, const glm::dmat4&
   }
   reading.rightHanded = glm::determinant(rotation) > 0;
   if (reading.rightHanded) reading.cameraFromWorld = kFlipZ * reading.cameraFromWorld;
-  // What products of floats lose: a few units in the last place of the largest terms that cancel.
   const glm::dmat4 worldFromCamera = glm::inverse(reading.cameraFromWorld);
-  const double slack = 4.0 * 1.2e-7 * largest(ndcFromWorld) * std::max(1.0, largest(worldFromCamera));
-  const std::optional<Lens> lens = lensOf(ndcFromWorld * worldFromCamera, std::max(slack, 1e-6), found);
+  const std::optional<Lens> lens = lensOf(ndcFromWorld, worldFromCamera, found);
   if (!lens) return std::nullopt;
   reading.lens = *lens;
   return reading;

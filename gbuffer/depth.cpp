@@ -23,20 +23,38 @@ double storedPrecision(const ExrPart& part, const ExrChannel& depth) {
   return part.compression == "pxr24" ? 0x1p-14 : 0x1p-20;
 }
 
-// A step of window depth at the median distance, relative to that distance: z = n f / (f - d (f - n)), so
-// dz / z = z (1/n - 1/f) dd.
-float devicePrecision(const Image<float>& viewZ, const Camera& camera, PixelType type) {
+// The depth than which one in so many finite pixels is nearer.
+std::optional<double> depthBehind(const Image<float>& viewZ, std::size_t oneIn) {
   std::vector<float> finite;
   for (std::size_t i = 0; i < viewZ.size(); ++i)
     if (std::isfinite(viewZ[i])) finite.push_back(viewZ[i]);
-  if (finite.empty()) return 0.0f;
-  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-  std::nth_element(finite.begin(), middle, finite.end());
+  if (finite.empty()) return std::nullopt;
+  const auto chosen = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / oneIn);
+  std::nth_element(finite.begin(), chosen, finite.end());
+  return static_cast<double>(*chosen);
+}
+
+// A step of the stored number near 1, relative to the depth that it moves. Of window depth that step grows with
+// distance, z = n f / (f - d (f - n)) and so dz / z = z (1/n - 1/f) dd, and is taken at the median. Where it is a
+// length, it counts most for what is near: there one pixel in twenty is nearer than where it is taken.
+double stepPrecision(const Image<float>& viewZ, const DepthConverter& convert, PixelType type) {
+  if (convert.stretch(1.0) == 0.0) return 0.0;
+  const bool isLength = convert.stretch(2.0) < convert.stretch(1.0);
+  const std::optional<double> z = depthBehind(viewZ, isLength ? 20 : 2);
   const double step = type == PixelType::half ? 0x1p-10 : 0x1p-22;  // twice half an ulp at 1, and as much again
-  const double slope = camera.orthographic
-                           ? (camera.rangeFar - camera.rangeNear) / static_cast<double>(*middle)
-                           : static_cast<double>(*middle) * (1.0 / camera.rangeNear - 1.0 / camera.rangeFar);
-  return static_cast<float>(step * slope);
+  return z ? step * convert.stretch(*z) : 0.0;
+}
+
+// The file's matrices are floats: their camera stands and looks only as exactly as floats of its distance from the
+// origin say, which is compared with the median depth.
+//   stored  what the depth is allowed in any case
+double placePrecision(const Image<float>& viewZ, const std::optional<Camera>& camera, double stored) {
+  if (!camera) return 0.0;
+  const double lost = 0x1p-23 * glm::length(glm::dvec3(camera->viewFromWorld[3]));
+  float nearest = kNothing;
+  for (std::size_t i = 0; i < viewZ.size(); ++i) nearest = std::min(nearest, viewZ[i]);
+  if (!std::isfinite(nearest) || lost <= stored * static_cast<double>(nearest)) return 0.0;  // no need of the median
+  return lost / *depthBehind(viewZ, 2);
 }
 
 // Where nobody said what the numbers mean, the numbers have a say.
@@ -166,8 +184,9 @@ void convertDepth(const ExrPart& part, const ExrChannel& depth, const DepthKind&
   });
   for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i)
     if (!std::isfinite(gbuffer.viewZ[i])) ++file.choice.farPixels;
-  gbuffer.depthPrecision = kind.meaning == DepthMeaning::device ? devicePrecision(gbuffer.viewZ, *camera, depth.type)
-                                                                : static_cast<float>(storedPrecision(part, depth));
+  const double stored = storedPrecision(part, depth);
+  gbuffer.depthPrecision = static_cast<float>(std::max({stored, stepPrecision(gbuffer.viewZ, convert, depth.type),
+                                                        placePrecision(gbuffer.viewZ, gbuffer.camera, stored)}));
   noteOddities(depth, firstX, firstY, file);
 }
 

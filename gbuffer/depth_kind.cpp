@@ -136,7 +136,8 @@ DepthConverter::DepthConverter(const DepthKind& kind, PixelType type, std::optio
   if ((kind.meaning == DepthMeaning::ray || device) && !camera)
     throw MeaningError(
         fmt::format("{}: found no camera, expected one to convert --depth-kind {}", what, depthKindText(kind)));
-  if (device && !(camera->rangeNear > 0.0 && camera->rangeFar > camera->rangeNear))
+  const bool endless = device && !camera->orthographic && camera->rangeNear > 0.0 && camera->rangeFar == 0.0;
+  if (device && !endless && !(camera->rangeNear > 0.0 && camera->rangeFar > camera->rangeNear))
     throw MeaningError(
         fmt::format("{}: found the clip range {} to {}, expected a camera with 0 < near < far to "
                     "convert --depth-kind {}",
@@ -144,6 +145,30 @@ DepthConverter::DepthConverter(const DepthKind& kind, PixelType type, std::optio
   const bool mayBeZero = kind.reversed || kind.inverted;
   if (!(far_ > 0.0) && !(mayBeZero && far_ >= 0.0))
     throw UsageError(fmt::format("--far: found {}, expected a number above 0", far_));
+}
+
+DepthConverter DepthConverter::planar() const {
+  DepthConverter converter = *this;
+  converter.kind_ = {};
+  converter.far_ = defaultFar(converter.kind_, PixelType::float32);
+  return converter;
+}
+
+// A perspective camera that states near without far has none: its projection is the limit.
+double DepthConverter::deviceDistance(double value) const {
+  const double n = camera_->rangeNear, f = camera_->rangeFar;
+  if (camera_->orthographic) return kind_.reversed ? f - value * (f - n) : n + value * (f - n);
+  if (f == 0.0) return n / (kind_.reversed ? value : 1.0 - value);
+  return kind_.reversed ? n * f / (n + value * (f - n)) : n * f / (f - value * (f - n));
+}
+
+double DepthConverter::stretch(double z) const {
+  if (kind_.meaning == DepthMeaning::normalised && kind_.inverted)
+    return (kind_.rangeFar - kind_.rangeNear) * unit_ / z;
+  if (kind_.meaning != DepthMeaning::device) return 0.0;
+  if (camera_->orthographic) return (camera_->rangeFar - camera_->rangeNear) / z;
+  if (kind_.reversed) return 0.0;  // 1/z but for what the far plane adds
+  return z * (1.0 / camera_->rangeNear - (camera_->rangeFar > 0.0 ? 1.0 / camera_->rangeFar : 0.0));
 }
 
 double DepthConverter::distance(double value, double x, double y) const {
@@ -158,11 +183,8 @@ double DepthConverter::distance(double value, double x, double y) const {
       return unit_ / value;
     case DepthMeaning::normalised:
       return (kind_.rangeNear + (kind_.inverted ? 1.0 - value : value) * (kind_.rangeFar - kind_.rangeNear)) * unit_;
-    case DepthMeaning::device: {
-      const double n = camera_->rangeNear, f = camera_->rangeFar;
-      if (camera_->orthographic) return kind_.reversed ? f - value * (f - n) : n + value * (f - n);
-      return kind_.reversed ? n * f / (n + value * (f - n)) : n * f / (f - value * (f - n));
-    }
+    case DepthMeaning::device:
+      return deviceDistance(value);
     case DepthMeaning::ray:
       return value * unit_ / rayOverPlanar(*camera_, display_, x, y);
   }

@@ -59,8 +59,15 @@ class DepthConverter {
   double distance(double value, double x, double y) const;
   double far() const { return far_; }
   const DepthKind& kind() const { return kind_; }
+  // Of a file in the same unit whose depth is planar, whatever was said of others.
+  DepthConverter planar() const;
+  // What an error of 1 in the stored number is of that depth at most, as a part of it: 0 where the number is as exact
+  // as the depth, because one goes with the other or with its inverse.
+  double stretch(double planarMetres) const;
 
  private:
+  double deviceDistance(double value) const;
+
   DepthKind kind_;
   double far_, unit_;
   const Camera* camera_;

@@ -28,7 +28,7 @@ Fog placeFog(const MediumSettings& settings, const Camera& camera, const Ambient
              std::vector<shading::PunctualLight> lights) {
   if (!(settings.density >= 0.0) || !(settings.height >= 0.0) || !(std::abs(settings.g) <= 0.98) ||
       settings.steps < 1 || !(settings.collimation >= 0.0 && settings.collimation <= 1.0) ||
-      !(settings.farthest > 0.0) || (settings.box && !inOrder(*settings.box)) ||
+      (settings.farthest && !(*settings.farthest > 0.0)) || (settings.box && !inOrder(*settings.box)) ||
       (settings.emission != glm::dvec3(0.0) && !(settings.density > 0.0)))
     throw std::logic_error("placeFog: a setting is out of its range");
   const glm::dmat3 turn(camera.viewFromWorld);
@@ -41,8 +41,8 @@ Fog placeFog(const MediumSettings& settings, const Camera& camera, const Ambient
   medium.extinction = {static_cast<float>(settings.density),
                        settings.height > 0.0 && !settings.grid ? static_cast<float>(1.0 / settings.height) : 0.0f,
                        bounded ? 1.0f : 0.0f, settings.grid ? 1.0f : 0.0f};
-  medium.march = {static_cast<float>(settings.farthest), static_cast<float>(settings.steps),
-                  static_cast<float>(1.0 - settings.collimation), 0.0f};
+  medium.march = {static_cast<float>(settings.farthest.value_or(kFogBeforeNothing)), static_cast<float>(settings.steps),
+                  static_cast<float>(1.0 - settings.collimation), settings.farthest ? 0.0f : 1.0f};
   const glm::dvec3 eye(worldFromView[3]);
   medium.up = glm::vec4(glm::vec3(turn * glm::dvec3(0.0, 1.0, 0.0)), static_cast<float>(eye.y - settings.base));
   medium.ambient = glm::vec4(ambient.mean, 0.0f);
@@ -85,7 +85,7 @@ Box fogBounds(const MediumSettings& settings, const Camera& camera, const GBuffe
   float farthest = 0.0f;
   for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i)
     if (std::isfinite(gbuffer.viewZ[i])) farthest = std::max(farthest, gbuffer.viewZ[i]);
-  const auto limit = static_cast<float>(settings.farthest);
+  const auto limit = static_cast<float>(settings.farthest.value_or(kFogBeforeNothing));
   farthest = farthest > 0.0f ? std::min(farthest, limit) : limit;
   const PixelRays rays = pixelRays(camera, gbuffer.display, {gbuffer.data.x0, gbuffer.data.y0}, {0.5, 0.5});
   const glm::dmat4 worldFromView = glm::inverse(camera.viewFromWorld);

@@ -63,6 +63,8 @@ struct Box {
   bool operator==(const Box&) const = default;
 };
 
+constexpr double kFogBeforeNothing = 1000.0;  // metres of a ray that ends on nothing, where nobody says otherwise
+
 // In the world's metres, y up.
 struct MediumSettings {
   double density = 0.0;      // 1/m, extinction at the base; a grid multiplies it
@@ -71,9 +73,9 @@ struct MediumSettings {
   glm::dvec3 albedo{1.0};    // of one scattering event, [0,1]
   double g = 0.0;            // -0.98 to 0.98, > 0 scatters forward
   glm::dvec3 emission{0.0};  // radiance that a metre adds where it is as dense as `density`; grows with the density
-  double farthest = 1000.0;  // metres from the eye beyond which there is none
-  int steps = 64;            // of the march
-  double collimation = 1.0;  // [0,1]; below 1 it diffuses what lies behind it
+  std::optional<double> farthest;  // metres from the eye beyond which there is none; unset: before surfaces, all of it
+  int steps = 64;                  // of the march
+  double collimation = 1.0;        // [0,1]; below 1 it diffuses what lies behind it
   int order = shading::PLD_FOG_ORDERED;
   std::optional<Box> box;
   std::shared_ptr<const DensityGrid> grid;  // wins over the box

@@ -50,7 +50,8 @@ void SceneFlags::addTo(CLI::App& verb) {
                   "Surroundings: radiance R,G,B or a lat-long EXR; without it the sky's median");
   verb.add_option("--set", overrides, "MATERIAL.key=value: " + gltf::setKeyNames())->allow_extra_args(false);
   addThinFlag(verb, thin);
-  verb.add_option("--scene-unit", unit, "Metres in one unit of the glTF, of fog and its grids; --unit is the picture's")
+  verb.add_option("--scene-unit", unit,
+                  "Metres in one unit of the glTF and of the grids of fog; --fog is in metres; --unit is the picture's")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb.add_option("--asset-root", assetRoot,

@@ -99,7 +99,8 @@ void addRender(CLI::App& app) {
   addThinFlag(*verb, flags->thin);
   verb->add_option("--asset-root", opaque.assetRoot,
                    "Folder whose files a glTF may name besides those under its own folder");
-  verb->add_option("--scene-unit", opaque.unit, "Metres in one unit of the glTF, of fog and its grids")
+  verb->add_option("--scene-unit", opaque.unit,
+                   "Metres in one unit of the glTF and of the grids of fog; --fog is in metres")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_option("--lumens-per-watt", opaque.lumensPerWatt, "glTF lights are photometric, renders are not")

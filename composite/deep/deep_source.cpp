@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -46,6 +47,8 @@ DeepSource::DeepSource(const std::string& path, const DepthConverter& depth, con
       index_(index),
       channels_(resolveDeep(path, view)),
       reader_(path, channels_.part, channels_.names) {
+  // `fragments` wrote it: it says itself how it is read, whatever the picture's depth means.
+  if (channels_.hasRecord()) depth_ = depth.planar();
   if (reader_.display() != shot.display)
     throw MeaningError(fmt::format("{}: found display window {}, expected {} of the opaque picture", path,
                                    windowText(reader_.display()), windowText(shot.display)));
@@ -136,9 +139,27 @@ class DeepMerge {
       }
   }
 
+  // The nearest opaque samples of a pixel, by the rules of visitTidy(): those at one depth average among themselves,
+  // and points come before the volumes that begin there.
+  struct Opaque {
+    glm::dvec3 light{0.0};
+    double count = 0.0;
+    float z = std::numeric_limits<float>::infinity();
+    bool point = false;
+    void add(const DeepSample& sample) {
+      const auto at = static_cast<float>(sample.z);
+      if (at > z || (at == z && point && sample.isVolume())) return;
+      if (at < z || point == sample.isVolume()) *this = {.z = at, .point = !sample.isVolume()};
+      light += sample.light;
+      count += 1.0;
+    }
+    glm::vec4 solid() const { return {glm::vec3(light / count), z}; }
+  };
+
   struct Scratch {
     std::vector<DeepSample> volumes;
     std::vector<double> cuts;
+    std::vector<std::size_t> plain;  // fragments of samples that other renderers wrote
   };
 
   // Light goes through the matrix, and so does the white light that is let through or hidden.
@@ -167,6 +188,8 @@ class DeepMerge {
     const double surface = static_cast<double>(shot_.viewZ.at(x - shot_.data.x0, y - shot_.data.y0)) *
                            (1.0 + static_cast<double>(shot_.depthPrecision));
     scratch.volumes.clear();
+    scratch.plain.clear();
+    Opaque nearest;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       const DeepSource& source = *sources_[s];
       if (!contains(rows_[s].window, x, y)) continue;
@@ -183,12 +206,7 @@ class DeepMerge {
         if (sample.isVolume() && sample.zBack > surface) sample = partOfVolume(sample, sample.z, surface);
         const bool opaque = sample.opacity.x >= 1.0 && sample.opacity.y >= 1.0 && sample.opacity.z >= 1.0;
         if (opaque) {
-          // Opaque from its very front on. Ties: the larger, channel by channel, whatever the order.
-          const auto z = static_cast<float>(sample.z);
-          if (z < solid.a)
-            solid = glm::vec4(glm::vec3(sample.light), z);
-          else if (z == solid.a)
-            solid = glm::max(solid, glm::vec4(glm::vec3(sample.light), z));
+          nearest.add(sample);  // from its very front on
           continue;
         }
         if (sample.isVolume() && rule_ == VolumeRule::split) {
@@ -198,8 +216,17 @@ class DeepMerge {
         Fragment fragment = source.channels_.hasRecord() ? recordOf(source, rows_[s], i, sample.z)
                                                          : fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
         fragment.identity = identityOf(source.index_, x, y, i - first);
+        if (!source.channels_.hasRecord()) scratch.plain.push_back(out.size());
         out.push_back(fragment);
       }
+    }
+    if (nearest.count > 0.0 && nearest.z <= solid.a) {
+      // It hides what other renderers' samples have at its depth; anything else there lies on it. Of two solids at one
+      // depth the larger, channel by channel, whatever the order.
+      for (const std::size_t i : scratch.plain)
+        if (nearest.point && out[i].z == nearest.z)
+          out[i].z = std::nextafter(nearest.z, std::numeric_limits<float>::infinity());
+      solid = nearest.z < solid.a ? nearest.solid() : glm::max(solid, nearest.solid());
     }
     std::erase_if(scratch.volumes, [&](const DeepSample& v) { return v.z > static_cast<double>(solid.a); });
     if (!scratch.volumes.empty()) splitVolumes(scratch, out, had, static_cast<double>(solid.a), x, y);

@@ -15,7 +15,7 @@ namespace pellucid {
 class DeepSource {
  public:
   // Throws what resolveDeep and DeepReader throw, and MeaningError when the display window is not the shot's.
-  //   depth  from the file's numbers
+  //   depth  from the file's numbers; those that `fragments` wrote are planar in any case
   //   view   what --view says
   DeepSource(const std::string& path, const DepthConverter& depth, const GBuffer& shot, std::uint32_t index,
              const std::string& view = "");

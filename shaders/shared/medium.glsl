@@ -7,12 +7,15 @@
 #include "shared/resolve.glsl"
 #include "shared/surface.glsl"
 
+const float PLD_NO_SURFACE = 3e38f;  // depth from which a ray ends on nothing
+
 // A medium, in the view space of one camera.
 struct Medium {
   vec4 scattering;    // rgb albedo of one scattering event, [0,1]; a: g of Henyey and Greenstein, (-1,1), > 0 forward
   vec4 extinction;    // x: 1/m at the base; y: 1/m by which its logarithm falls with height; z: 1 where a box bounds it;
                       // w: 1 where a grid multiplies it
-  vec4 march;         // x: metres beyond which there is none; y: steps; z: 1 - collimation, how much it diffuses
+  vec4 march;         // x: metres beyond which there is none; y: steps; z: 1 - collimation, how much it diffuses;
+                      // w: 1 where x is for rays that end on nothing alone
   vec4 up;            // unit, of the world; w: height of view space's origin over the base, metres
   vec4 ambient;       // rgb mean radiance of the surroundings
   vec4 ambientRed;    // xyz first order of it about a direction, per channel: radiance is ambient + dot(this, direction)
@@ -128,7 +131,7 @@ PLD_FN FogSpan fogSpan(Medium medium, vec3 origin, vec3 direction, float zPerMet
   span.zPerMetre = zPerMetre;
   span.start = 0.0f;
   span.end = medium.march.x;
-  if (z < medium.march.x * zPerMetre) span.end = z / zPerMetre;
+  if (z < PLD_NO_SURFACE && (medium.march.w != 0.0f || z < medium.march.x * zPerMetre)) span.end = z / zPerMetre;
   if (medium.extinction.z != 0.0f) {
     vec2 inside = boxSpan(medium.boxFromView, origin, direction);
     span.start = max(span.start, inside.x);

@@ -7,6 +7,7 @@
 
 #include "tests/support/exr_shots.h"
 #include "tests/support/program.h"
+#include "tests/support/shell.h"
 #include "tests/support/shots.h"
 
 namespace pellucid {
@@ -160,6 +161,25 @@ TEST_F(Errors, FullDisk) {
                         folder + "/missing/out.exr"})
                 .code,
             6);
+}
+
+// A report on a disk that is full: a sentence and an exit code, whether or not it is longer than what is kept before it
+// is written.
+TEST_F(Errors, ResultsThatCannotBePrintedAreTold) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no device that is full";
+  std::vector<ExtraLayer> layers;
+  for (int k = 0; k < 200; ++k)
+    layers.push_back({"layer" + std::to_string(k), {{"R", Image<float>(4, 4, 0.0f)}, {"G", Image<float>(4, 4, 0.0f)}}});
+  const Window window{0, 0, 4, 4};
+  writeLayers(folder + "/many.exr", window, window, layers, {}, nullptr, false);
+  const std::string program = "cd " + folder + " && " + PELLUCID_BINARY_DIR + "/bin/pellucid ";
+  for (const std::string arguments : {"--version", "help methods", "composite --help", "compare opaque.exr opaque.exr",
+                                      "compare many.exr many.exr --json"}) {
+    const Ended ended = shell(program + arguments + " > /dev/full", folder);
+    EXPECT_EQ(ended.code, 6) << arguments << ": " << ended.out;
+    EXPECT_NE(ended.out.find("standard output: "), std::string::npos) << arguments << ": " << ended.out;
+  }
+  EXPECT_EQ(shell(program + "--version >&-", folder).code, 0) << "whoever closes it wants no results";
 }
 
 TEST_F(Errors, OutputsAreRefusedBeforeAnythingIsRead) {

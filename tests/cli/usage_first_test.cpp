@@ -35,6 +35,13 @@ TEST(UsageFirst, IsToldWithoutTheFiles) {
       {gbuffer, {"--shutter", "0:1"}, "--shutter"},
       {gbuffer, {"--lens-radius", "0.1"}, "--focus"},
       {gbuffer, {"--aa", "4"}, "--aa"},
+      {composite, {"--frames", ""}, "--frames"},
+      {composite, {"--frame", ""}, "--frame"},
+      {composite, {"--fog", ""}, "--fog"},
+      {composite, {"--environment="}, "--environment"},
+      {accumulate, {"--camera", ""}, "--camera"},
+      {accumulate, {"--focus", ""}, "--focus"},
+      {render, {"--ocio", ""}, "--ocio"},
   };
   for (const Line& line : lines) {
     std::vector<std::string> arguments = line.verb;

@@ -142,6 +142,25 @@ TEST(Fog, PixelsWithoutFogAreNotTouched) {
   EXPECT_LT(touched, 900);
 }
 
+// A surface ends its ray's fog wherever it is; a stated `far` ends it before, and 1000 m do where there is nothing.
+TEST(Fog, ReachesSurfacesHoweverFar) {
+  constexpr double kDensity = 2e-4;
+  for (const float wall : {400.0f, 1400.0f, 20000.0f, std::numeric_limits<float>::infinity()})
+    for (const bool stated : {false, true}) {
+      FogStage stage(3, 3, wall);
+      MediumSettings settings;
+      settings.density = kDensity;
+      settings.albedo = glm::dvec3(0.0);
+      if (stated) settings.farthest = 600.0;
+      const Picture picture = stage.picture(stage.sums(stage.fog(settings, glm::vec3(0.0f))));
+      const double metres = std::isfinite(wall) ? static_cast<double>(wall) : 1000.0;
+      const double passed = std::exp(-kDensity * (stated ? std::min(metres, 600.0) : metres));
+      const double before = static_cast<double>(stage.gbuffer.beauty.at(1, 1).g);
+      EXPECT_NEAR(static_cast<double>(picture.rgba.at(1, 1).g) / before, passed, 2e-5 * passed + 1e-6)
+          << wall << stated;
+    }
+}
+
 TEST(Fog, ExtremesStayFinite) {
   for (const double density : {0.0, 1e-12, 1e3, 1e9})
     for (const double height : {0.0, 1e-3, 1e6})

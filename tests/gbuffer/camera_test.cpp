@@ -85,6 +85,26 @@ TEST(Camera, ExrRoundTrip) {
   EXPECT_LT(worst, 0.02) << "matrices of floats, 20 m from the origin: 1e-7 * 20 / 3 of some 2000 pixels, a few times";
 }
 
+// Fifty kilometres off, in metres or in centimetres: what floats lose of the place is no part of the projection.
+TEST(Camera, FarFromTheOriginTheAttributesAreACamera) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> d(-1.0, 1.0);
+  for (int i = 0; i < 200; ++i) {
+    Camera camera = someCamera(random, i % 2 == 1);
+    camera.viewFromWorld =
+        glm::translate(camera.viewFromWorld, std::pow(10.0, 3.0 + i % 4) * glm::dvec3(d(random), d(random), 1.0));
+    float toCamera[4][4], toNdc[4][4];
+    cameraToExr(camera, toCamera, toNdc);
+    const Camera back = cameraFromExr(rows(toCamera), rows(toNdc), "shot.exr");
+    EXPECT_EQ(back.orthographic, camera.orthographic) << i;
+    EXPECT_EQ(back.origin, "attribute worldToCamera") << i;
+    EXPECT_LT(glm::length(back.focal - camera.focal), 1e-5) << i;
+    // Of parallel rays the middle of the picture and the camera's place are one sum.
+    if (camera.orthographic) continue;
+    EXPECT_LT(glm::length(back.centre - camera.centre), 1e-5) << i;
+  }
+}
+
 TEST(Camera, TransposedAndUpsideDownMatricesAreHandled) {
   std::mt19937 random(6);
   const Camera camera = someCamera(random, false);

@@ -1,6 +1,7 @@
 // Depth as it is stored: every kind to planar metres, what is said of it, and what is warned of.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "gbuffer/depth_kind.h"
@@ -56,6 +57,65 @@ TEST_F(DepthKinds, EachBecomesPlanarMetres) {
   part.planes.push_back(floatPlane("Z", room_.depth([](double z, double) { return (.5 * 100 / z - .5) / 99.5; })));
   writeFile(folder_.path("shot.exr"), {part});
   EXPECT_LT(worst(readOpaque(folder_.path("shot.exr"), device, &camera)), 1e-5);
+}
+
+// glTF's word for a projection that ends nowhere, which engines with reversed depth draw by.
+TEST_F(DepthKinds, AClipRangeWithoutAnEndIsRead) {
+  Camera camera = room_.camera;
+  camera.rangeNear = 0.5;
+  camera.rangeFar = 0;
+  for (const bool reversed : {true, false}) {
+    ReadOptions device;
+    device.depthKind = reversed ? "device:reversed" : "device";
+    Part part = room_.part(false);
+    part.planes.push_back(
+        floatPlane("Z", room_.depth([&](double z, double) { return reversed ? .5 / z : 1 - .5 / z; })));
+    const std::string path = folder_.path(reversed ? "reversed.exr" : "shot.exr");
+    writeFile(path, {part});
+    EXPECT_LT(worst(readOpaque(path, device, &camera)), 1e-5);
+    camera.orthographic = true;
+    EXPECT_THROW(readOpaque(path, device, &camera), MeaningError);
+    camera.orthographic = false;
+  }
+}
+
+// What is allowed for is what a step of the stored numbers moves: much where 1 is near, nothing where 0 is far.
+TEST_F(DepthKinds, PrecisionIsThatOfTheStoredNumbers) {
+  ReadOptions options;
+  const auto ramp = [](double z, double) { return 1 - z / 1000; };
+  options.depthKind = "normalised:0:1000:inverted";
+  const OpaqueFile inverted = read(ramp, options);
+  EXPECT_LT(worst(inverted), static_cast<double>(inverted.gbuffer.depthPrecision));
+  EXPECT_LT(inverted.gbuffer.depthPrecision, 1e-4f);
+  options.depthKind = "normalised:0:1000";
+  EXPECT_EQ(read([](double z, double) { return z / 1000; }, options).gbuffer.depthPrecision, 0x1p-20f);
+  Camera camera = room_.camera;
+  camera.rangeNear = 1e-4;
+  camera.rangeFar = 1e6;
+  Part part = room_.part(false);
+  part.planes.push_back(floatPlane("Z", room_.depth([](double z, double) { return 1e-4 * (1 / z - 1e-6); })));
+  writeFile(folder_.path("reversed.exr"), {part});
+  options.depthKind = "device:reversed";
+  const OpaqueFile reversed = readOpaque(folder_.path("reversed.exr"), options, &camera);
+  EXPECT_EQ(reversed.gbuffer.depthPrecision, 0x1p-20f);
+  EXPECT_LT(worst(reversed), 1e-6);
+}
+
+// Matrices of floats lose of the camera's place what floats of its distance from the origin lose.
+TEST_F(DepthKinds, ACameraFarOffIsAllowedWhatItsMatricesLose) {
+  for (const double metres : {0.0, 20.0, 1e5}) {
+    Room room;
+    room.camera.viewFromWorld[3] = glm::dvec4(0.6 * metres, 0.0, 0.8 * metres, 1.0);
+    Part part = room.part(true);
+    part.planes.push_back(floatPlane("Z", room.depth([](double z, double) { return z; })));
+    const std::string path = folder_.path(std::to_string(metres) + ".exr");
+    writeFile(path, {part});
+    const OpaqueFile file = readOpaque(path, {});
+    std::vector<double> z = room.z;
+    std::nth_element(z.begin(), z.begin() + static_cast<std::ptrdiff_t>(z.size() / 2), z.end());
+    const double lost = 0x1p-23 * metres / z[z.size() / 2];
+    EXPECT_NEAR(static_cast<double>(file.gbuffer.depthPrecision), std::max(lost, 0x1p-20), 1e-3 * lost) << metres;
+  }
 }
 
 TEST_F(DepthKinds, LimitsOfARampAreNothing) {

@@ -293,6 +293,53 @@ TEST_F(DeepVerbs, FragmentsReadBackGiveTheSamePicture) {
   EXPECT_GT(difference("direct.exr", "opaque.exr"), .05);  // there was something to see
 }
 
+// What is said of the picture's depth is not said of fragments, which are planar whatever it is.
+TEST_F(DeepVerbs, FragmentsArePlanarWhateverThePicturesDepthIs) {
+  run({"composite", "opaque.exr", "glass.glb", "-o", "direct.exr", "--aa", "1"});
+  const std::pair<float, std::string> depths[] = {
+      {-10.0f, "negative"}, {0.1f, "inverse"}, {0.75f, "normalised:0:40:inverted"}, {-0.1f, "inverse:negative"}};
+  for (const auto& [depth, kind] : depths) {
+    writeOpaque(folder + "/said.exr", {.depth = depth});
+    run({"fragments", "said.exr", "glass.glb", "-o", "deep.exr", "--depth-kind", kind});
+    run({"composite", "said.exr", "deep.exr", "-o", "viadeep.exr", "--aa", "1", "--depth-kind", kind});
+    EXPECT_LE(difference("direct.exr", "viadeep.exr"), 1e-6) << kind;
+  }
+}
+
+// An opaque sample hides what others have at its depth, and opaque ones average; points come before volumes.
+TEST_F(DeepVerbs, CoincidentSamplesCompositeAsTheyFlatten) {
+  constexpr int kSize = 64;
+  DeepRows rows;
+  rows.window = {0, 0, kSize, kSize};
+  rows.offsets.assign(1, 0);
+  rows.channels.resize(6);
+  Random random(5);
+  for (int i = 0; i < kSize * kSize; ++i) {
+    for (std::uint32_t k = random.below(5); k > 0; --k) {
+      const float alpha = random.below(3) == 0 ? 1.0f : random.uniformf(),
+                  z = 2.0f + static_cast<float>(random.below(3));
+      const float back = z + (random.below(3) == 0 ? 0.5f : 0.0f);
+      const float values[6] = {
+          alpha * random.uniformf(), alpha * random.uniformf(), alpha * random.uniformf(), alpha, z, back};
+      for (std::size_t c = 0; c < 6; ++c) rows.channels[c].push_back(values[c]);
+    }
+    rows.offsets.push_back(rows.channels[0].size());
+  }
+  writeDeep(folder + "/many.exr", rows, {"R", "G", "B", "A", "Z", "ZBack"});
+  run({"flatten", "many.exr", "-o", "flat.exr"});
+  for (const std::string passes : {"1", "2"}) {
+    run({"composite", "opaque.exr", "many.exr", "-o", "out.exr", "--aa", passes});
+    const Image<glm::vec4> flat = readOpaque(folder + "/flat.exr", {}).gbuffer.beauty;
+    const Image<glm::vec4> out = readOpaque(folder + "/out.exr", {}).gbuffer.beauty;
+    const glm::vec4 behind(0.25f, 0.5f, 0.75f, 1.0f);
+    float worst = 0;
+    for (std::size_t i = 0; i < flat.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        worst = std::max(worst, std::abs(out[i][c] - (flat[i][c] + (1.0f - flat[i].a) * behind[c])));
+    EXPECT_LT(worst, 1e-5f) << passes;  // floats of both files
+  }
+}
+
 TEST_F(DeepVerbs, SmokeInADeepFileMeetsGlassExactly) {
   // A volume from 2 to 6 m, the glass at about 3.5 m inside it: the front part lies over the glass, the rest under it.
   DeepRows rows;
