@@ -43,6 +43,10 @@ void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
                                              "front+tail", "mlab:4",           "wavelet:2"};
     flags.method = oneOf(random, kMeans);
   }
+  if (scene.oneLayer) {
+    static constexpr const char* kSums[] = {"phenomenological", "phenomenological", "front+tail", "mlab:4"};
+    flags.method = oneOf(random, kSums);
+  }
   const bool hasExact = flags.method == "over" || flags.method == "phenomenological";
   const bool exact = hasExact && chance(random, 0.4);
   // Precision by itself asks for the sums.

@@ -9,7 +9,8 @@ namespace pellucid::test {
 void makeGlass(SceneMaker& maker, Random& random) {
   maker.scene().oneColour = false;
   for (PlacedMesh& mesh : maker.scene().placed) {
-    if (mesh.coat.texture >= 0 || !mesh.colours.empty() || chance(random, 0.3)) continue;
+    const bool coloured = mesh.coat.texture >= 0 || !mesh.colours.empty();
+    if ((coloured && (maker.scene().kind != "refracting" || chance(random, 0.5))) || chance(random, 0.3)) continue;
     mesh.coat.glass = true;
     mesh.coat.colour = Vec4(glm::min(drawnColour(random), Vec3(1.0)), chance(random, 0.5) ? 1.0 : mesh.coat.colour.a);
     if (chance(random, 0.5)) mesh.coat.emission = drawnColour(random);

@@ -189,6 +189,15 @@ void shadowed(SceneMaker& maker, Random& random) {
   maker.scene().numbers.shadows = true;
 }
 
+// One sheet before a wall, or through it.
+void single(SceneMaker& maker, Random& random) {
+  const double z = maker.scene().size, depth = z * random.between(0.4, 1.1);
+  maker.plane(maker.at(0, 0, z), tilted(random, 60.0));
+  maker.place(drawnSheet(random, random.between(0.5, 1.5) * widthAt(maker, depth)),
+              maker.at(random.between(-0.4, 0.4), random.between(-0.4, 0.4), depth),
+              facing(tilted(random, 75.0), drawnSpin(random)));
+}
+
 void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
   if (kind == "decals") return decals(maker, random);
   if (kind == "contact") return contact(maker, random);
@@ -201,9 +210,13 @@ void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
   if (kind == "far") return drawInto(any[random.below(5)], maker, random);
   if (kind == "refracting") {
     maker.keepProportions();
-    drawInto(any[random.below(static_cast<std::uint32_t>(any.size()))], maker, random);
+    maker.scene().oneLayer = chance(random, 0.25);
+    if (maker.scene().oneLayer)
+      single(maker, random);
+    else
+      drawInto(any[random.below(static_cast<std::uint32_t>(any.size()))], maker, random);
     makeRefracting(maker, random);
-    if (!chance(random, 0.2)) return;
+    if (maker.scene().oneLayer || !chance(random, 0.2)) return;
     fillAir(maker, random);
     // What lights the fog is mirrored.
     maker.scene().numbers.surroundings = maker.scene().numbers.air.light / random.between(0.3, 1.0);
@@ -236,7 +249,8 @@ const std::vector<std::string>& sceneKinds() {
 
 DrawnScene drawScene(const std::string& kind, Random& random) {
   const double size = drawnSize(random);
-  SceneMaker maker(kind, random, size, kind == "far" ? logBetween(random, 1e3, 1e7) : 0.0);
+  const bool far = kind == "far" || (kind == "refracting" && chance(random, 0.2));
+  SceneMaker maker(kind, random, size, far ? logBetween(random, 1e3, 1e7) : 0.0);
   drawInto(kind, maker, random);
   return maker.finish();
 }

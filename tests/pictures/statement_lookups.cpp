@@ -114,7 +114,9 @@ Statements::Range Statements::seenBehind(const Spot& spot, const Shown& shown, c
   Vec2 low[3], high[3];
   double nearest = reference::kNothing, farthest = 0.0;
   for (int c = 0; c < 3; ++c) low[c] = Vec2(1e300), high[c] = Vec2(-1e300);
-  for (const double z : {first, last})
+  // Layers are met up to beyond the depth, which is itself rounded to either side.
+  const double rounded = last == reference::kNothing ? 0.0 : last - first + flags_.depthStep() * first;
+  for (const double z : {first - rounded, last})
     for (const Vec2 tilt : {Vec2(0, 0), Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
       const Landing landing =
           reference::landingOf(scene.eye, scene.bending, shown.bends, std::min(z, shown.solidZ), kTilt * tilt);
