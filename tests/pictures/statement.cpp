@@ -178,7 +178,12 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
     for (const double part : margin > kWide ? std::vector<double>{1.0, 0.6, 0.3} : std::vector<double>{1.0})
       for (const Vec2 off : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)})
         take(picture_.columnAt(at.x + part * margin * off.x, at.y + part * margin * off.y));
-    for (const reference::CutBand& band : bands_) take(picture_.columnAt(at.x, at.y, band));
+    for (const reference::CutBand& band : bands_) {
+      const Column cut = picture_.columnAt(at.x, at.y, band);
+      take(cut);
+      eachPartly(cut, columns[i], take);
+      eachPartly(columns[i], cut, take);
+    }
     sum += nominal;
     squares += nominal * nominal;
     low += range.low;

@@ -85,6 +85,9 @@ class Statements {
                 double last) const;
   void takeCuts(const Spot& spot, const reference::Column& column, const reference::Face& face, double nearest,
                 double farthest, const reference::Vec4& behind, Range& range) const;
+  // Glass at the rim of a mask, which bends by the part that it covers: what one column has and another has not.
+  void eachPartly(const reference::Column& more, const reference::Column& fewer,
+                  const std::function<void(const reference::Column&)>& take) const;
   Statement innerAt(int x, int y, const Surroundings& around) const;
   Statement filteredAt(int x, int y, const Statement& inner) const;
   Statement mixedAt(int x, int y) const;

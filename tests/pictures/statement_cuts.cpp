@@ -78,6 +78,24 @@ void Statements::eachCut(const Column& column, const Face& face, double nearest,
   }
 }
 
+void Statements::eachPartly(const Column& more, const Column& fewer,
+                            const std::function<void(const Column&)>& take) const {
+  for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {
+    Column partly = more;
+    bool any = false;
+    for (reference::Crossing& crossing : partly.crossings) {
+      const bool both = std::any_of(fewer.crossings.begin(), fewer.crossings.end(), [&](const auto& other) {
+        return other.mesh == crossing.mesh && other.layer.z == crossing.layer.z;
+      });
+      if (both || !crossing.bend) continue;
+      crossing.layer.coverage *= part;
+      crossing.bend->weight *= part;
+      any = true;
+    }
+    if (any) take(partly);
+  }
+}
+
 void Statements::takeCuts(const Spot& spot, const Column& column, const Face& face, double nearest, double farthest,
                           const Vec4& behind, Range& range) const {
   eachCut(column, face, nearest, farthest,
