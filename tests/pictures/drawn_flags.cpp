@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tests/pictures/scene_parts.h"
 
 namespace pellucid::test {
@@ -41,6 +43,10 @@ void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
                                              "front+tail", "mlab:4",           "wavelet:2"};
     flags.method = oneOf(random, kMeans);
   }
+  if (scene.oneLayer) {
+    static constexpr const char* kSums[] = {"phenomenological", "phenomenological", "front+tail", "mlab:4"};
+    flags.method = oneOf(random, kSums);
+  }
   const bool hasExact = flags.method == "over" || flags.method == "phenomenological";
   const bool exact = hasExact && chance(random, 0.4);
   // Precision by itself asks for the sums.
@@ -53,9 +59,19 @@ void drawMethod(const DrawnScene& scene, Random& random, DrawnFlags& flags) {
 }
 
 // The surroundings light the fog; of what it scatters all that is not its albedo's share is theirs.
-void drawAir(const reference::EvenAir& air, Random& random, DrawnFlags& flags) {
-  if (!(air.density > 0.0)) return;
-  const double part = random.between(0.3, 1.0);
+void drawAir(const reference::PictureScene& scene, Random& random, DrawnFlags& flags) {
+  const reference::EvenAir& air = scene.air;
+  const Vec3 around = scene.surroundings;
+  const bool lit = around != Vec3(0.0);
+  if (!(air.density > 0.0)) {
+    const bool mirrors = std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const reference::Mesh& mesh) {
+      return mesh.coat.filling.mirrors || mesh.coat.finish.lit;
+    });
+    // Else the picture's sky would light them.
+    if (mirrors) flags.words.push_back(fmt::format("--environment={},{},{}", around.r, around.g, around.b));
+    return;
+  }
+  const double part = lit ? air.light.r / around.r : random.between(0.3, 1.0);
   std::string fog = fmt::format("--fog=density={},albedo={}", air.density, part);
   if (air.farthest != reference::EvenAir().farthest) fog += fmt::format(",far={}", air.farthest);
   if (air.inside) {
@@ -67,6 +83,29 @@ void drawAir(const reference::EvenAir& air, Random& random, DrawnFlags& flags) {
   flags.words.push_back(fog);
   flags.words.push_back(
       fmt::format("--environment={},{},{}", air.light.r / part, air.light.g / part, air.light.b / part));
+}
+
+// Rough glass spreads what stands behind it, and surroundings are dimmed on leaves by what stands beside them: the
+// reference knows nothing of either.
+void addLight(const reference::PictureScene& scene, DrawnFlags& flags) {
+  if (scene.lamps.empty()) return;
+  flags.words.emplace_back("--diffusion=off");
+  flags.words.emplace_back("--occlusion=off");
+  if (scene.shadows) flags.words.emplace_back("--shadows=exact");
+}
+
+void addBending(const reference::PictureScene& scene, DrawnFlags& flags) {
+  using Until = reference::Bending::Until;
+  switch (scene.bending.until) {
+    case Until::depth:
+      return;
+    case Until::never:
+      return flags.words.emplace_back("--refract=off"), void();
+    case Until::slab:
+      return flags.words.emplace_back("--refract=thickness"), void();
+    case Until::distance:
+      flags.words.push_back(fmt::format("--refract=fixed:{}", scene.bending.distance));
+  }
 }
 
 }  // namespace
@@ -88,7 +127,9 @@ DrawnFlags drawFlags(const DrawnScene& scene, Random& random) {
     flags.softMask = false;
     flags.words.emplace_back("--mask=hard");
   }
-  drawAir(scene.numbers.air, random, flags);
+  drawAir(scene.numbers, random, flags);
+  addBending(scene.numbers, flags);
+  addLight(scene.numbers, flags);
   if (chance(random, 0.2)) flags.words.emplace_back("--budget=1M");
   if (chance(random, 0.2)) flags.words.push_back(fmt::format("--order=shuffle:{}", random.below(100)));
   return flags;

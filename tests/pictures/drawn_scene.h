@@ -31,6 +31,7 @@ struct StoredTexture {
 struct DrawnScene {
   std::string kind;
   double size = 1.0;       // metres: how far away things are
+  bool oneLayer = false;   // one flat sheet: then every method's sums are the picture
   bool oneColour = false;  // all coats show the same: then every mean of layers is their colour
   std::vector<PlacedMesh> placed;
   std::vector<StoredTexture> stored;

@@ -1,4 +1,4 @@
-// A fixed hundred of the random pictures that ./dev campaign pictures draws.
+// A fixed hundred and thirty of the random pictures that ./dev campaign pictures draws.
 #include <gtest/gtest.h>
 
 #include "tests/pictures/trial.h"
@@ -12,11 +12,11 @@ void expectRight(const Trial& trial, const Outcome& outcome, const std::string& 
                                << slurp(folder + "/command");
 }
 
-TEST(Pictures, AHundredAreRight) {
+TEST(Pictures, AHundredAndThirtyAreRight) {
   const std::string folder = freshFolder("pictures");
   const auto kept = std::make_shared<KeptWork>(-1);
   std::vector<Outcome> outcomes;
-  for (std::uint64_t i = 100; i < 200; ++i) {
+  for (std::uint64_t i = 100; i < 230; ++i) {
     const Trial trial{sceneKinds()[i % sceneKinds().size()], i};
     outcomes.push_back(runTrial(trial, folder, kept));
     expectRight(trial, outcomes.back(), folder);

@@ -7,6 +7,7 @@
 
 #include "gbuffer/opaque_io.h"
 #include "tests/pictures/png.h"
+#include "tests/pictures/scene_parts.h"
 
 namespace pellucid::test {
 namespace {
@@ -29,11 +30,12 @@ constexpr double kEmissionAtMost = 2.0;  // glTF's own factor ends at 1
 
 class GlbFile {
  public:
-  json root{{"asset", {{"version", "2.0"}}},
-            {"scene", 0},
-            {"extensionsUsed",
-             {"KHR_materials_unlit", "KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_specular",
-              "KHR_materials_emissive_strength"}}};
+  json root{
+      {"asset", {{"version", "2.0"}}},
+      {"scene", 0},
+      {"extensionsUsed",
+       {"KHR_materials_unlit", "KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_specular",
+        "KHR_materials_emissive_strength", "KHR_materials_volume", "KHR_materials_dispersion", "KHR_lights_punctual"}}};
 
   std::size_t view(const std::string& bytes) {
     while (binary_.size() % 4) binary_.push_back('\0');
@@ -79,7 +81,15 @@ json numbersOf(const glm::dmat4& matrix) {
   return numbers;
 }
 
-json materialOf(const reference::Coat& coat) {
+// Thickness is in the mesh's own units, as long as its nodes keep proportions.
+void fill(const reference::Filling& filling, double metresPerUnit, json& extensions) {
+  extensions["KHR_materials_volume"] = {{"thicknessFactor", filling.thickness / metresPerUnit},
+                                        {"attenuationColor", {filling.colour.r, filling.colour.g, filling.colour.b}}};
+  if (filling.clearness < 1e300) extensions["KHR_materials_volume"]["attenuationDistance"] = filling.clearness;
+  if (filling.dispersion > 0.0) extensions["KHR_materials_dispersion"] = {{"dispersion", filling.dispersion}};
+}
+
+json materialOf(const reference::Coat& coat, double metresPerUnit) {
   json colour = {{"baseColorFactor", {coat.colour.r, coat.colour.g, coat.colour.b, coat.colour.a}}};
   if (coat.texture >= 0) {
     const Vec2 across(coat.fromUv[0]), down(coat.fromUv[1]);
@@ -93,18 +103,18 @@ json materialOf(const reference::Coat& coat) {
   json material{{"pbrMetallicRoughness", colour},
                 {"doubleSided", coat.bothSides},
                 {"alphaMode", coat.covering == reference::Covering::blend ? "BLEND" : "MASK"}};
-  if (coat.glass) {
-    // Of the index of what is around it and without gloss: it neither bends nor mirrors.
+  if (!coat.glass && !coat.finish.lit) {
+    material["extensions"] = {{"KHR_materials_unlit", json::object()}};
+  } else {
     material["emissiveFactor"] = {coat.emission.r / kEmissionAtMost, coat.emission.g / kEmissionAtMost,
                                   coat.emission.b / kEmissionAtMost};
-    material["extensions"] = {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
-                              {"KHR_materials_ior", {{"ior", 1.0}}},
-                              {"KHR_materials_specular", {{"specularFactor", 0.0}}},
+    material["extensions"] = {{"KHR_materials_ior", {{"ior", coat.filling.index}}},
+                              {"KHR_materials_specular", {{"specularFactor", coat.filling.mirrors ? 1.0 : 0.0}}},
                               {"KHR_materials_emissive_strength", {{"emissiveStrength", kEmissionAtMost}}}};
-    material["pbrMetallicRoughness"]["metallicFactor"] = 0.0;
-    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.0;
-  } else {
-    material["extensions"] = {{"KHR_materials_unlit", json::object()}};
+    if (coat.glass) material["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", coat.finish.passes}};
+    if (coat.filling.thickness > 0.0) fill(coat.filling, metresPerUnit, material["extensions"]);
+    material["pbrMetallicRoughness"]["metallicFactor"] = coat.finish.metal;
+    material["pbrMetallicRoughness"]["roughnessFactor"] = coat.finish.roughness;
   }
   if (coat.covering == reference::Covering::mask) material["alphaCutoff"] = coat.cutoff;
   return material;
@@ -134,7 +144,9 @@ std::size_t addMesh(const PlacedMesh& placed, GlbFile& file) {
   json attributes{{"POSITION", file.accessor(placed.points, 5126, "VEC3")}};
   if (!placed.uv.empty()) attributes["TEXCOORD_0"] = file.accessor(placed.uv, 5126, "VEC2");
   if (!placed.colours.empty()) attributes["COLOR_0"] = file.accessor(placed.colours, 5126, "VEC4");
-  file.root["materials"].push_back(materialOf(placed.coat));
+  glm::dmat4 world(1.0);
+  for (const glm::dmat4& node : placed.nodes) world = world * node;
+  file.root["materials"].push_back(materialOf(placed.coat, std::cbrt(std::abs(glm::determinant(glm::dmat3(world))))));
   file.root["meshes"].push_back({{"primitives",
                                   {{{"attributes", attributes},
                                     {"indices", file.accessor(indices, 5125, "SCALAR")},
@@ -145,6 +157,58 @@ std::size_t addMesh(const PlacedMesh& placed, GlbFile& file) {
   for (std::size_t i = placed.nodes.size(); i-- > 1;)
     nodes.push_back({{"children", {nodes.size() - 1}}, {"matrix", numbersOf(placed.nodes[i - 1])}});
   return nodes.size() - 1;
+}
+
+// Boxes, for shadows: what is opaque in the file throws them.
+std::size_t addSolid(const reference::Box& box, GlbFile& file) {
+  std::vector<glm::vec3> points;
+  std::vector<std::uint32_t> indices;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const auto first = static_cast<std::uint32_t>(points.size());
+      for (const Vec2 at : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)}) {
+        Vec3 corner;
+        corner[axis] = side * box.half[axis];
+        corner[(axis + 1) % 3] = at.x * side * box.half[(axis + 1) % 3];
+        corner[(axis + 2) % 3] = at.y * box.half[(axis + 2) % 3];
+        points.emplace_back(corner);
+      }
+      for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + k);
+    }
+  file.root["materials"].push_back({{"alphaMode", "OPAQUE"}});
+  file.root["meshes"].push_back({{"primitives",
+                                  {{{"attributes", {{"POSITION", file.accessor(points, 5126, "VEC3")}}},
+                                    {"indices", file.accessor(indices, 5125, "SCALAR")},
+                                    {"material", file.root["materials"].size() - 1}}}}});
+  glm::dmat4 pose(box.axes);
+  pose[3] = glm::dvec4(box.centre, 1.0);
+  file.root["nodes"].push_back({{"mesh", file.root["meshes"].size() - 1}, {"matrix", numbersOf(pose)}});
+  return file.root["nodes"].size() - 1;
+}
+
+constexpr double kLumensPerWatt = 683.0;
+
+// Returns its node.
+std::size_t addLamp(const reference::PunctualLamp& lamp, GlbFile& file) {
+  using Kind = reference::PunctualLamp::Kind;
+  const double brightest = std::max({lamp.intensity.r, lamp.intensity.g, lamp.intensity.b});
+  const Vec3 colour = lamp.intensity / brightest;
+  json light{{"type", lamp.kind == Kind::sun     ? "directional"
+                      : lamp.kind == Kind::point ? "point"
+                                                 : "spot"},
+             {"color", {colour.r, colour.g, colour.b}},
+             {"intensity", brightest * kLumensPerWatt}};
+  if (lamp.range > 0.0) light["range"] = lamp.range;
+  if (lamp.kind == Kind::spot) light["spot"] = {{"innerConeAngle", lamp.innerCone}, {"outerConeAngle", lamp.outerCone}};
+  json& lights = file.root["extensions"]["KHR_lights_punctual"]["lights"];
+  lights.push_back(light);
+  // Lamps shine along the -z of their nodes.
+  const glm::dmat3 axes = facing(-lamp.along, 1.0);
+  glm::dmat4 pose(axes);
+  pose[3] = glm::dvec4(lamp.at, 1.0);
+  file.root["nodes"].push_back(
+      {{"matrix", numbersOf(pose)}, {"extensions", {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}}}});
+  return file.root["nodes"].size() - 1;
 }
 
 }  // namespace
@@ -185,6 +249,10 @@ void writeScene(const std::string& path, const DrawnScene& scene) {
                                {"znear", 1e-3 * scene.size}}}}};
   glm::dmat4 pose(eye.axes);
   pose[3] = glm::dvec4(eye.at, 1.0);
+  for (const reference::PunctualLamp& lamp : scene.numbers.lamps) roots.push_back(addLamp(lamp, file));
+  if (scene.numbers.shadows)
+    for (const reference::Solid& solid : scene.numbers.solids)
+      roots.push_back(addSolid(std::get<reference::Box>(solid.shape), file));
   roots.push_back(file.root.contains("nodes") ? file.root["nodes"].size() : 0);
   file.root["nodes"].push_back({{"camera", 0}, {"name", "cam"}, {"matrix", numbersOf(pose)}});
   file.root["scenes"] = {{{"nodes", roots}}};

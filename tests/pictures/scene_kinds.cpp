@@ -4,25 +4,17 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tests/pictures/scene_finish.h"
 #include "tests/pictures/scene_parts.h"
+#include "tests/pictures/scene_textured.h"
 
 namespace pellucid::test {
 namespace {
 
 using reference::Face;
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
-
 double drawnSize(Random& random) {
   return chance(random, 0.4) ? random.between(1.0, 10.0) : logBetween(random, 0.05, 5000.0);
-}
-// Of a surface that faces the eye, but for a tilt.
-Vec3 tilted(Random& random, double most) {
-  const double tilt = random.between(0.0, most) * kDegrees, way = random.between(0.0, 360.0) * kDegrees;
-  return {std::sin(tilt) * std::cos(way), std::sin(tilt) * std::sin(way), std::cos(tilt)};
-}
-double drawnSpin(Random& random) {
-  return random.between(0.0, 2.0 * std::numbers::pi);
 }
 // Where the line of sight through parts of the picture meets a plane.
 std::optional<Vec3> onPlane(const SceneMaker& maker, double x, double y, const Vec3& point, const Vec3& normal) {
@@ -32,21 +24,6 @@ std::optional<Vec3> onPlane(const SceneMaker& maker, double x, double y, const V
   if (!(z > 0.0) || z > 1e3 * glm::length(point)) return std::nullopt;
   return from + z * along;
 }
-double widthAt(const SceneMaker& maker, double z) {
-  return maker.half(0) * (maker.parallel() ? 1.0 : z);
-}
-
-Sheet drawnSheet(Random& random, double half) {
-  switch (random.below(3)) {
-    case 0:
-      return quadSheet(half * random.between(0.3, 1.0), half * random.between(0.3, 1.0));
-    case 1:
-      return polygonSheet(random, half);
-    default:
-      return gridSheet(random, 2 + static_cast<int>(random.below(3)), half, 0.0);
-  }
-}
-
 // Sheets on a tilted wall, and off it by little: before it whole, behind it not at all.
 void decals(SceneMaker& maker, Random& random) {
   const double z = maker.scene().size;
@@ -187,78 +164,38 @@ void meshes(SceneMaker& maker, Random& random) {
   }
 }
 
-StoredTexture drawnTexture(Random& random, bool clearToo) {
-  StoredTexture texture;
-  texture.width = 2 + static_cast<int>(random.below(7));
-  texture.height = 2 + static_cast<int>(random.below(7));
-  for (int i = 0; i < texture.width * texture.height; ++i) {
-    for (int c = 0; c < 3; ++c) texture.rgba.push_back(static_cast<std::uint8_t>(random.below(256)));
-    const bool clear = clearToo && chance(random, 0.3);
-    texture.rgba.push_back(clear ? 0 : static_cast<std::uint8_t>(1 + random.below(255)));
+// Crates on a floor, panes and shells above them, and lamps: everything shadows what is lit.
+void shadowed(SceneMaker& maker, Random& random) {
+  const double z = maker.scene().size, width = widthAt(maker, z);
+  const Vec3 up = glm::normalize(Vec3(0.3 * random.between(-1, 1), 1.0, random.between(0.2, 2.0)));
+  maker.box(maker.at(0, -0.6, z) - 1.1 * width * up, facing(up, drawnSpin(random)), width * Vec3(12, 12, 1));
+  const int crates = static_cast<int>(random.below(3));
+  for (int i = 0; i < crates; ++i)
+    maker.box(maker.at(random.between(-0.8, 0.8), random.between(-0.6, 0.6), z * random.between(0.8, 1.2)),
+              turned(random),
+              width * Vec3(random.between(0.1, 0.4), random.between(0.1, 0.4), random.between(0.1, 0.4)));
+  const int panes = 2 + static_cast<int>(random.below(4));
+  for (int i = 0; i < panes; ++i) {
+    const double depth = z * random.between(0.5, 1.2), half = random.between(0.3, 1.2) * widthAt(maker, depth);
+    const Sheet sheet = chance(random, 0.25)  ? ballSheet(4, 0.6 * half)
+                        : chance(random, 0.3) ? gridSheet(random, 2, half, 0.2 * half)
+                                              : drawnSheet(random, half);
+    maker.place(sheet, maker.at(random.between(-0.8, 0.8), random.between(-0.6, 0.8), depth), turned(random));
   }
-  const auto wrap = [&] { return static_cast<reference::Wrap>(random.below(3)); };
-  texture.wrapS = wrap();
-  texture.wrapT = wrap();
-  texture.nearest = chance(random, 0.3);
-  return texture;
+  if (chance(random, 0.3)) {
+    textured(maker, random, chance(random, 0.5));
+    maker.scene().numbers.solids.pop_back();  // its wall, which is no box
+  }
+  maker.scene().numbers.shadows = true;
 }
 
-// Sheets that show a few large texels; where `cut`, alpha-tested.
-void textured(SceneMaker& maker, Random& random, bool cut) {
-  const double z = maker.scene().size;
-  maker.scene().oneColour = false;
-  maker.plane(maker.at(0, 0, 2.0 * z), tilted(random, 70.0));
-  const int count = 1 + static_cast<int>(random.below(3));
-  for (int i = 0; i < count; ++i) {
-    StoredTexture texture = drawnTexture(random, true);
-    const double depth = z * random.between(0.6, 1.5), half = random.between(0.7, 2.0) * widthAt(maker, depth);
-    PlacedMesh& mesh = maker.place(chance(random, 0.5) ? quadSheet(half, half * random.between(0.5, 1.0))
-                                                       : gridSheet(random, 3, half, 0.03 * half),
-                                   maker.at(random.between(-0.4, 0.4), random.between(-0.4, 0.4), depth),
-                                   facing(tilted(random, 50.0), drawnSpin(random)));
-    reference::Coat& coat = mesh.coat;
-    // 6 to 30 pixels a texel, so that the finest level is read throughout; even where tilted.
-    const double pixels = maker.scene().numbers.eye.displayWidth * half / widthAt(maker, depth);
-    const double texels = pixels / random.between(6.0, 30.0);
-    const Vec2 scale = texels / Vec2(texture.width, texture.height);
-    const double turn = chance(random, 0.5) ? drawnSpin(random) : 0.0, c = std::cos(turn), s = std::sin(turn);
-    // KHR_texture_transform: scaled, turned, moved.
-    coat.fromUv = glm::dmat3(c * scale.x, -s * scale.x, 0.0, s * scale.y, c * scale.y, 0.0, random.between(-1, 1),
-                             random.between(-1, 1), 1.0);
-    coat.texture = static_cast<int>(maker.scene().stored.size());
-    if (cut) {
-      coat.covering = reference::Covering::mask;
-      coat.cutoff = random.between(0.2, 0.8);
-      coat.colour.a = 1.0;
-      texture.nearest = false;
-    }
-    maker.scene().stored.push_back(std::move(texture));
-  }
-}
-
-// Most of the sheets become glass, coloured and glowing.
-void makeGlass(SceneMaker& maker, Random& random) {
-  maker.scene().oneColour = false;
-  for (PlacedMesh& mesh : maker.scene().placed) {
-    if (mesh.coat.texture >= 0 || !mesh.colours.empty() || chance(random, 0.3)) continue;
-    mesh.coat.glass = true;
-    mesh.coat.colour = Vec4(glm::min(drawnColour(random), Vec3(1.0)), chance(random, 0.5) ? 1.0 : mesh.coat.colour.a);
-    if (chance(random, 0.5)) mesh.coat.emission = drawnColour(random);
-  }
-}
-
-// Fog, of a few depths of the scene, everywhere or in a box that may hold the eye.
-void fillAir(SceneMaker& maker, Random& random) {
-  const double size = maker.scene().size;
-  reference::EvenAir& air = maker.scene().numbers.air;
-  air.density = logBetween(random, 0.01, 3.0) / size;
-  air.light = maker.scene().oneColour ? maker.oneColour() : glm::min(drawnColour(random), Vec3(1.0));
-  if (chance(random, 0.5)) air.farthest = random.between(0.5, 3.0) * size;
-  if (chance(random, 0.6)) return;
-  const auto part = [&] { return size * random.between(0.2, 1.0); };
-  const double across = part(), up = part();
-  air.inside = reference::Box{Vec3(maker.worldFromEye() * Vec4(maker.at(0, 0, random.between(0.0, 1.2) * size), 1.0)),
-                              glm::dmat3(1.0), Vec3(across, up, part())};
+// One sheet before a wall, or through it.
+void single(SceneMaker& maker, Random& random) {
+  const double z = maker.scene().size, depth = z * random.between(0.4, 1.1);
+  maker.plane(maker.at(0, 0, z), tilted(random, 60.0));
+  maker.place(drawnSheet(random, random.between(0.5, 1.5) * widthAt(maker, depth)),
+              maker.at(random.between(-0.4, 0.4), random.between(-0.4, 0.4), depth),
+              facing(tilted(random, 75.0), drawnSpin(random)));
 }
 
 void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
@@ -271,6 +208,30 @@ void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
   if (kind == "cut-outs") return textured(maker, random, true);
   static const std::vector<std::string> any{"decals", "contact", "posts", "shapes", "meshes", "textures", "cut-outs"};
   if (kind == "far") return drawInto(any[random.below(5)], maker, random);
+  if (kind == "refracting") {
+    maker.keepProportions();
+    maker.scene().oneLayer = chance(random, 0.25);
+    if (maker.scene().oneLayer)
+      single(maker, random);
+    else
+      drawInto(any[random.below(static_cast<std::uint32_t>(any.size()))], maker, random);
+    makeRefracting(maker, random);
+    if (maker.scene().oneLayer || !chance(random, 0.2)) return;
+    fillAir(maker, random);
+    // What lights the fog is mirrored.
+    maker.scene().numbers.surroundings = maker.scene().numbers.air.light / random.between(0.3, 1.0);
+    return;
+  }
+  if (kind == "lamps" || kind == "shadows") {
+    maker.keepProportions();
+    if (kind == "shadows")
+      shadowed(maker, random);
+    else
+      drawInto(any[random.below(static_cast<std::uint32_t>(any.size()))], maker, random);
+    if (chance(random, 0.3)) makeRefracting(maker, random);
+    lightUp(maker, random);
+    return;
+  }
   if (kind != "air" && kind != "glass") throw std::invalid_argument("no kind of scene '" + kind + "'");
   drawInto(any[random.below(static_cast<std::uint32_t>(any.size()))], maker, random);
   if (kind == "glass") makeGlass(maker, random);
@@ -280,14 +241,16 @@ void drawInto(const std::string& kind, SceneMaker& maker, Random& random) {
 }  // namespace
 
 const std::vector<std::string>& sceneKinds() {
-  static const std::vector<std::string> kinds{"decals",   "contact",  "posts", "shapes", "meshes",
-                                              "textures", "cut-outs", "far",   "air",    "glass"};
+  static const std::vector<std::string> kinds{"decals",     "contact",  "posts",  "shapes", "meshes",
+                                              "textures",   "cut-outs", "far",    "air",    "glass",
+                                              "refracting", "lamps",    "shadows"};
   return kinds;
 }
 
 DrawnScene drawScene(const std::string& kind, Random& random) {
   const double size = drawnSize(random);
-  SceneMaker maker(kind, random, size, kind == "far" ? logBetween(random, 1e3, 1e7) : 0.0);
+  const bool far = kind == "far" || (kind == "refracting" && chance(random, 0.2));
+  SceneMaker maker(kind, random, size, far ? logBetween(random, 1e3, 1e7) : 0.0);
   drawInto(kind, maker, random);
   return maker.finish();
 }

@@ -9,12 +9,14 @@ namespace pellucid::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kDegrees = kPi / 180.0;
 
 // Numbers that a mesh's own coordinates are multiplied with; the nodes undo it.
-glm::dmat4 drawnStretch(Random& random) {
+glm::dmat4 drawnStretch(Random& random, bool proportioned) {
   Vec3 by(1.0);
   if (chance(random, 0.5))
     for (int k = 0; k < 3; ++k) by[k] = std::exp2(random.between(-6.0, 6.0));
+  if (proportioned) by = Vec3(by.x);
   for (int k = 0; k < 3; ++k)
     if (chance(random, 0.25)) by[k] = -by[k];
   return glm::scale(glm::dmat4(1.0), by);
@@ -106,6 +108,28 @@ Sheet ballSheet(int across, double radius) {
   return sheet;
 }
 
+Vec3 tilted(Random& random, double most) {
+  const double tilt = random.between(0.0, most) * kDegrees, way = random.between(0.0, 360.0) * kDegrees;
+  return {std::sin(tilt) * std::cos(way), std::sin(tilt) * std::sin(way), std::cos(tilt)};
+}
+double drawnSpin(Random& random) {
+  return random.between(0.0, 2.0 * std::numbers::pi);
+}
+double widthAt(const SceneMaker& maker, double z) {
+  return maker.half(0) * (maker.parallel() ? 1.0 : z);
+}
+
+Sheet drawnSheet(Random& random, double half) {
+  switch (random.below(3)) {
+    case 0:
+      return quadSheet(half * random.between(0.3, 1.0), half * random.between(0.3, 1.0));
+    case 1:
+      return polygonSheet(random, half);
+    default:
+      return gridSheet(random, 2 + static_cast<int>(random.below(3)), half, 0.0);
+  }
+}
+
 SceneMaker::SceneMaker(const std::string& kind, Random& random, double size, double farOff) : random_(random) {
   scene_.kind = kind;
   scene_.size = size;
@@ -187,7 +211,7 @@ PlacedMesh& SceneMaker::place(const Sheet& sheet, const Vec3& origin, const glm:
   glm::dmat4 worldFromSheet(axes);
   worldFromSheet[3] = glm::dvec4(origin, 1.0);
   worldFromSheet = worldFromEye_ * worldFromSheet;
-  const glm::dmat4 stretch = baked ? worldFromSheet : drawnStretch(random_);
+  const glm::dmat4 stretch = baked ? worldFromSheet : drawnStretch(random_, proportioned_);
   for (const Vec3& point : sheet.points) mesh.points.emplace_back(Vec3(stretch * Vec4(point, 1.0)));
   for (const Vec2& uv : sheet.uv) mesh.uv.emplace_back(uv);
   mesh.triangles = sheet.triangles;
@@ -197,7 +221,7 @@ PlacedMesh& SceneMaker::place(const Sheet& sheet, const Vec3& origin, const glm:
   if (!baked) {
     glm::dmat4 rest = worldFromSheet * glm::inverse(stretch);
     if (chance(random_, 0.4)) {
-      const glm::dmat4 parent = glm::dmat4(turned(random_)) * drawnStretch(random_);
+      const glm::dmat4 parent = glm::dmat4(turned(random_)) * drawnStretch(random_, proportioned_);
       mesh.nodes.push_back(parent);
       rest = glm::inverse(parent) * rest;
     }

@@ -27,6 +27,12 @@ Sheet polygonSheet(Random& random, double radius);                       // a fa
 Sheet gridSheet(Random& random, int across, double half, double bumps);  // bumps out of its plane
 Sheet ballSheet(int across, double radius);                              // closed
 
+Sheet drawnSheet(Random& random, double half);
+
+// Of a surface that faces the eye, but for a tilt of so many degrees at most.
+Vec3 tilted(Random& random, double most);
+double drawnSpin(Random& random);
+
 class SceneMaker {
  public:
   //   size  of the scene, metres
@@ -42,6 +48,8 @@ class SceneMaker {
   PlacedMesh& placeOn(const reference::Face& face, const Sheet& sheet, const Vec3& origin, const glm::dmat3& axes);
   Vec3 oneColour() const { return glm::min(one_, Vec3(1.0)); }
   double half(int axis) const { return scene_.numbers.eye.half[axis]; }
+  // Nodes of what is placed from now on scale all axes alike.
+  void keepProportions() { proportioned_ = true; }
   bool parallel() const { return scene_.numbers.eye.parallel; }
   // A place at a depth, at parts (-1 to 1) of the picture.
   Vec3 at(double x, double y, double z) const;
@@ -60,6 +68,10 @@ class SceneMaker {
   DrawnScene scene_;
   glm::dmat4 worldFromEye_{1.0};
   Vec3 one_{0.5};
+  bool proportioned_ = false;
 };
+
+// Half of the picture's width at a depth, metres.
+double widthAt(const SceneMaker& maker, double z);
 
 }  // namespace pellucid::test

@@ -19,14 +19,15 @@ using reference::Vec4;
 
 // Of the values themselves: colours are floats, and so are the products of a few layers.
 constexpr double kRounding = 1e-5;
-// Of a place in the picture, pixels: the rays of a pass are those of floats.
-constexpr double kPlace = 1e-4;
+// Of a range: another surface that may be seen was seen as far aside as places are off, and shows other light there.
+constexpr double kAside = 1e-3;
 constexpr double kWide = 0.01;  // of such a margin, pixels: within it more than one edge may lie
 constexpr int kFewPasses = 4;   // may all see what few places see
 // Across the square that a pass stands for: of more than one, coarser levels of a texture count, and devices may take
 // 0.7 for 1.
 constexpr double kMostTexels = 0.7;
-constexpr int kNear = 5;  // pixels within which another face may touch the slope of this one
+constexpr int kMostPlaces = 150;  // of those that would show it
+constexpr int kNear = 5;          // pixels within which another face may touch the slope of this one
 
 }  // namespace
 
@@ -73,6 +74,16 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
     bands_.push_back({edge_, side});
     for (const int mesh : masks) bands_.push_back({edge_, side, -1, mesh});  // through one rim another is seen
   }
+  for (const reference::Mesh& mesh : picture.scene().meshes) {
+    const bool covers = mesh.coat.covering == reference::Covering::mask || mesh.coat.colour.a >= 1.0;
+    anySolids_ = anySolids_ || (!mesh.coat.glass && covers);
+  }
+  for (const reference::Solid& solid : picture.scene().solids) striped_ = striped_ || solid.stripes != Vec3(0.0);
+  if (anySolids_) {
+    anywhere_.take(Vec4(0.0));
+    anywhere_.take(Vec4(1.0));
+  }
+  for (std::size_t i = 0; i < beauty.size(); ++i) anywhere_.take(Vec4(beauty[i]));
   // A corner comes to the eye through one product of floats: as far as the mesh's origin lies from the eye, and the
   // corner from that origin.
   const reference::Eye& eye = picture.scene().eye;
@@ -106,59 +117,6 @@ double Statements::bendOf(int x, int y) const {
   for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}})
     bend = std::max(bend, std::abs(at(x + dx, y + dy) + at(x - dx, y - dy) - 2.0 * at(x, y)));
   return bend * std::max(1.0, 2.0 * flags_.filter.radius * flags_.filter.radius);
-}
-
-// Pixels by which floats move what rays meet at the depths that lie in a pixel.
-double Statements::marginOf(const std::vector<Column>& columns) const {
-  const reference::Eye& eye = picture_.scene().eye;
-  double z = 0.5 * size_;
-  for (const Column& column : columns) {
-    z = std::min(z, column.opaque.z);
-    for (const reference::Crossing& crossing : column.crossings) z = std::min(z, crossing.layer.z);
-  }
-  return kPlace + rounding_ * eye.displayWidth / (2.0 * eye.half.x * (eye.parallel ? 1.0 : z));
-}
-
-void Statements::eachCut(const Column& column, const Face& face, double nearest, double farthest,
-                         const std::function<void(const Shown&)>& take) const {
-  Column loose = column;
-  bool any = false;
-  for (reference::Crossing& crossing : loose.crossings) {
-    if (face.solid < 0) break;
-    // Floats do not keep it on its face to the precision of the depth.
-    if (!(crossing.on == face) || rounding_ * crossing.steep < 0.25 * flags_.depthStep() * crossing.layer.z) continue;
-    crossing.on = Face();
-    any = true;
-  }
-  if (any) eachCut(loose, face, nearest, farthest, take);
-  // What touches a face shows at whatever depth lies behind it, but the air ends at the depth itself, which is rounded
-  // to either side.
-  const bool foggy = picture_.scene().air.density > 0.0 && farthest != kNothing;
-  const double rounded = farthest - nearest + flags_.depthStep() * nearest;
-  const auto takeCut = [&](const Column& cut, double z) {
-    take(picture_.shownBefore(cut, face, z));
-    if (!foggy) return;
-    for (const double end : {nearest - rounded, nearest + rounded}) take(picture_.shownBefore(cut, face, z, end));
-  };
-  takeCut(column, nearest);
-  takeCut(column, farthest);
-  for (std::size_t i = 0; i < column.crossings.size(); ++i) {
-    const reference::Crossing& crossing = column.crossings[i];
-    const double off = rounding_ * crossing.steep, z = crossing.layer.z;
-    if (z + off > nearest && z - off < farthest)
-      for (const double cut : {z - 2.0 * off, z + 2.0 * off}) takeCut(column, cut);
-    if (i == 0 || z - column.crossings[i - 1].layer.z > off + rounding_ * column.crossings[i - 1].steep) continue;
-    Column other = column;  // which of the two is nearer floats do not tell
-    std::swap(other.crossings[i - 1], other.crossings[i]);
-    std::swap(other.crossings[i - 1].layer.z, other.crossings[i].layer.z);
-    takeCut(other, nearest);
-    takeCut(other, farthest);
-  }
-}
-
-void Statements::takeCuts(const Column& column, const Face& face, double nearest, double farthest, const Vec4& behind,
-                          Range& range) const {
-  eachCut(column, face, nearest, farthest, [&](const Shown& shown) { range.take(valueOf(shown, behind)); });
 }
 
 Statements::Surroundings Statements::surroundingsOf(int x, int y) const {
@@ -206,19 +164,26 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
   const auto depthOf = [&](const Column& column) { return flat ? faceDepth(face, column.ray) : column.opaque.z; };
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Vec2 at = Vec2(x, y) + places_[i];
-    const Vec4 nominal = valueOf(picture_.shownBefore(columns[i], face, depthOf(columns[i])), behind);
+    const Spot spot{x, y, places_[i]};
+    const Shown shown = picture_.shownBefore(columns[i], face, depthOf(columns[i]));
+    const Vec4 nominal = valueOf(shown, exactlyBehind(spot, shown, behind, depthOf(columns[i])));
     Range range;
     range.take(nominal);
     const auto take = [&](const Column& column) {
       const double z = depthOf(column), farther = (2.0 * step + around.beside) * reach * z + bend;
-      takeCuts(column, face, z == kNothing ? z : z - around.beside * reach * z - bend, z == kNothing ? z : z + farther,
-               behind, range);
+      takeCuts(spot, column, face, z == kNothing ? z : z - around.beside * reach * z - bend,
+               z == kNothing ? z : z + farther, behind, range);
     };
     take(columns[i]);
     for (const double part : margin > kWide ? std::vector<double>{1.0, 0.6, 0.3} : std::vector<double>{1.0})
       for (const Vec2 off : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)})
         take(picture_.columnAt(at.x + part * margin * off.x, at.y + part * margin * off.y));
-    for (const reference::CutBand& band : bands_) take(picture_.columnAt(at.x, at.y, band));
+    for (const reference::CutBand& band : bands_) {
+      const Column cut = picture_.columnAt(at.x, at.y, band);
+      take(cut);
+      eachPartly(cut, columns[i], take);
+      eachPartly(columns[i], cut, take);
+    }
     sum += nominal;
     squares += nominal * nominal;
     low += range.low;
@@ -228,7 +193,8 @@ Statement Statements::innerAt(int x, int y, const Surroundings& around) const {
   Statement statement{Judged::inner, sum / count, Vec4(0.0), Vec4(0.0)};
   statement.variance = glm::max(squares / count - statement.right * statement.right, Vec4(0.0));
   const double brightest = std::max({1.0, high.r / count, high.g / count, high.b / count});
-  statement.allowed = glm::max(high / count - statement.right, statement.right - low / count) + kRounding * brightest;
+  statement.allowed = glm::max(high / count - statement.right, statement.right - low / count) +
+                      kAside * (high - low) / count + kRounding * brightest;
   return statement;
 }
 
@@ -237,10 +203,17 @@ Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
   double weights = 0.0, weightSquares = 0.0;
   Range seen;
   seen.take(inner.right);
+  int count = 0, number = 0;
+  samples_.under(x, y, [&](const Sampled&, double) { ++count; });
+  // Where bent rays show transparent meshes, some of the places stand for all.
+  int step = anySolids_ && picture_.anyBends() ? std::max(count / kMostPlaces, 1) : 1;
+  while (step > 1 && (step % 2 == 0 || step % 3 == 0)) ++step;  // rows of them are a multiple of 6
   samples_.under(x, y, [&](const Sampled& sample, double weight) {
-    seen.take(sample.value);
-    sum += weight * sample.value;
-    squares += weight * sample.value * sample.value;
+    if (number++ % step != 0) return;
+    const Vec4 value = sampledValue(x, y, sample);
+    seen.take(value);
+    sum += weight * value;
+    squares += weight * value * value;
     weights += weight;
     weightSquares += weight * weight;
   });
@@ -255,7 +228,7 @@ Statement Statements::filteredAt(int x, int y, const Statement& inner) const {
   return {Judged::filtered, mean, inner.allowed + 3.0 * glm::sqrt(variance * noise) + half, variance};
 }
 
-// Beside an edge and a third face a pixel of one face is no telling from one that is mixed a little.
+// Beside an edge and a third face, or stripes, a pixel of one face is no telling from one that is mixed a little.
 bool Statements::maybeTakenApart(int x, int y) const {
   if (!flags_.edges) return false;
   std::vector<Face> faces;
@@ -266,7 +239,7 @@ bool Statements::maybeTakenApart(int x, int y) const {
       if (std::find(faces.begin(), faces.end(), centre(u, v)) == faces.end()) faces.push_back(centre(u, v));
       beside = beside || (std::abs(u - x) < 2 && std::abs(v - y) < 2 && !(centre(u, v) == centre(x, y)));
     }
-  return beside && faces.size() > 2;
+  return striped_ ? faces.size() > 1 : beside && faces.size() > 2;
 }
 
 // Whether the coarser levels of a texture count, of which the reference has none.

@@ -1,7 +1,9 @@
 // What a pixel of a composited picture may be, by the reference: the right value and how far off it sampling may lead,
 // derived for each pixel from what lies in it.
 #pragma once
+#include <array>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "gbuffer/image.h"
@@ -40,6 +42,17 @@ class Statements {
     void take(const reference::Vec4& value);
     void take(const Range& other);
   };
+  // A pixel, and where a pass or a place of the reference lies in it.
+  struct Spot {
+    int x, y;
+    reference::Vec2 place;
+  };
+  // What a pixel of the backdrop may hold in a pass.
+  struct Texel {
+    reference::Vec4 colour;
+    double z;
+    bool operator==(const Texel&) const = default;
+  };
   struct Surroundings {
     std::vector<reference::Face> faces;  // under the filter
     bool onPlane = true;                 // the pixels beside it tell the slope of its face
@@ -47,6 +60,18 @@ class Statements {
   };
   Surroundings surroundingsOf(int x, int y) const;
   reference::Vec4 valueOf(const reference::Shown& shown, const reference::Vec4& behind) const;
+  // What is seen behind the layers: by straight rays `behind`, by bent ones what the picture shows elsewhere.
+  //   first, last  between which the opaque depth lies
+  Range seenBehind(const Spot& spot, const reference::Shown& shown, const reference::Vec4& behind, double first,
+                   double last) const;
+  reference::Vec4 exactlyBehind(const Spot& spot, const reference::Shown& shown, const reference::Vec4& behind,
+                                double z) const;
+  // Between the four pixels around a position, but for those that stand in front of the layer.
+  Range lookedUp(const Spot& spot, const reference::Vec2& position, double layerZ, bool exactly) const;
+  std::vector<Texel> texelsAt(int x, int y, const reference::Vec2& place, bool exactly) const;
+  std::vector<Texel> backdropOf(int x, int y, const reference::Column& column, bool exactly) const;
+  // Of the pixel and the place of a sample.
+  reference::Vec4 sampledValue(int x, int y, const reference::Sampled& sample) const;
   // Of a face that goes on for ever: nothing where it has left the picture, nearer than all where parallel rays meet it
   // behind the eye, as Pellucid has it.
   double faceDepth(const reference::Face& face, const reference::Ray& ray) const;
@@ -55,8 +80,14 @@ class Statements {
   // What is shown where the face lies between two depths.
   void eachCut(const reference::Column& column, const reference::Face& face, double nearest, double farthest,
                const std::function<void(const reference::Shown&)>& take) const;
-  void takeCuts(const reference::Column& column, const reference::Face& face, double nearest, double farthest,
-                const reference::Vec4& behind, Range& range) const;
+  // All that it may be.
+  Range rangeOf(const Spot& spot, const reference::Shown& shown, const reference::Vec4& behind, double first,
+                double last) const;
+  void takeCuts(const Spot& spot, const reference::Column& column, const reference::Face& face, double nearest,
+                double farthest, const reference::Vec4& behind, Range& range) const;
+  // Glass at the rim of a mask, which bends by the part that it covers: what one column has and another has not.
+  void eachPartly(const reference::Column& more, const reference::Column& fewer,
+                  const std::function<void(const reference::Column&)>& take) const;
   Statement innerAt(int x, int y, const Surroundings& around) const;
   Statement filteredAt(int x, int y, const Statement& inner) const;
   Statement mixedAt(int x, int y) const;
@@ -75,8 +106,12 @@ class Statements {
   const Image<glm::vec4>& beauty_;
   std::vector<glm::dvec2> places_;
   Image<reference::Met> centres_;
-  double edge_ = 1.0;                      // of the square that a pass stands for, pixels
-  double rounding_ = 0.0;                  // of positions as floats hold them, metres
+  double edge_ = 1.0;       // of the square that a pass stands for, pixels
+  double rounding_ = 0.0;   // of positions as floats hold them, metres
+  bool striped_ = false;    // the picture has more colours than surfaces
+  bool anySolids_ = false;  // of transparent meshes
+  Range anywhere_;          // of the picture, and of these
+  mutable std::map<std::array<double, 4>, std::vector<Texel>> texels_;
   std::vector<reference::CutBand> bands_;  // rims of masks; none where they are as sharp as a ray
   double size_;
 };

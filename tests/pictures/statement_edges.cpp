@@ -58,6 +58,7 @@ bool Statements::liesBehind(int x, int y, const Face& own, const Face& other) co
 
 std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& around) const {
   if (!flags_.edges || around.faces.size() != 2 || x == 0 || y == 0 || !inside(x + 1, y + 1)) return std::nullopt;
+  if (striped_ || (anySolids_ && picture_.anyBends())) return std::nullopt;  // bent rays show either, by the pass
   const Face own = centre(x, y), other = around.faces[0] == own ? around.faces[1] : around.faces[0];
   if (!(around.faces[0] == own || around.faces[1] == own)) return std::nullopt;
   for (int v = y - kReach - 1; v <= y + kReach + 1; ++v)
@@ -72,20 +73,25 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
 
   double shares[2] = {0.0, 0.0};
   Range ranges[2];
-  const auto takeColumn = [&](const Column& column) {
+  bool bent = false;
+  const auto takeColumn = [&](const Spot& spot, const Column& column) {
+    for (const reference::Crossing& crossing : column.crossings) bent = bent || crossing.bend;
     for (int side = 0; side < 2; ++side) {
       const Face& face = side == 0 ? own : other;
       const double z = faceDepth(face, column.ray);
       const double farther = 1.0 + 3.0 * flags_.depthStep();
-      takeCuts(column, face, z, z * farther, side == 0 ? ownColour : otherColour, ranges[side]);
+      takeCuts(spot, column, face, z, z * farther, side == 0 ? ownColour : otherColour, ranges[side]);
     }
   };
   const auto take = [&](double u, double v) {
-    takeColumn(picture_.columnAt(u, v));
-    for (const reference::CutBand& band : bands_) takeColumn(picture_.columnAt(u, v, band));
+    const Spot spot{x, y, {u - x, v - y}};
+    takeColumn(spot, picture_.columnAt(u, v));
+    for (const reference::CutBand& band : bands_) takeColumn(spot, picture_.columnAt(u, v, band));
   };
+  Vec4 mean(0.0);
   samples_.under(x, y, [&](const Sampled& sample, double weight) {
     shares[sample.opaque.face == own ? 0 : 1] += weight;
+    mean += weight * sampledValue(x, y, sample);
     take(sample.x, sample.y);
   });
   for (const glm::dvec2& place : places_) take(x + place.x, y + place.y);
@@ -95,14 +101,14 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
   const double stored = flags_.form.half ? 0x1p-11 * (glm::length(ownColour) + glm::length(otherColour)) : 0.0;
   // Either colour is off by as much, or by three times that where it is continued from farther off.
   const double astray = kNoShare + 6.0 * (impurity + stored) / contrast;
-  Statement statement{Judged::edge, samples_.mean(x, y, &Sampled::value), Vec4(kEdgeRounding + stored), {}};
+  Statement statement{Judged::edge, mean / (shares[0] + shares[1]), Vec4(kEdgeRounding + stored), {}};
   // What layers show and what shines through them may be dealt by shares that are astray, each by itself.
   const Vec4 brightest = glm::max(glm::max(ranges[0].high, ranges[1].high), glm::max(ownColour, otherColour));
   statement.allowed +=
       part * (ranges[0].high - ranges[0].low) + (1.0 - part) * (ranges[1].high - ranges[1].low) + astray * brightest;
   // Before nothing alpha is the share, where colours are seen alone.
   const bool tells = (own.solid < 0 || other.solid < 0) && impurity < kWholeAlpha;
-  if (tells) statement.allowed.a -= (astray - kNoShare) * brightest.a;
+  if (tells && !bent) statement.allowed.a -= (astray - kNoShare) * brightest.a;
   return statement;
 }
 
@@ -126,29 +132,42 @@ Statement Statements::mixedAt(int x, int y) const {
     for (int u = x - 2; u <= x + 2; ++u)
       if (inside(u, v)) meet(centres_.at(u, v));
   // Light and transmission apart: edges are taken apart with a weight for each.
-  Range light, passed;
-  const auto takeColumn = [&](const Column& column) {
+  Range light, passed, seen;
+  const Vec4 behind(beauty_.at(x, y));
+  seen.take(behind);
+  // Among stripes a side's colour is that of other pixels.
+  for (int v = y - kReach; v <= y + kReach && striped_ && flags_.edges; ++v)
+    for (int u = x - kReach; u <= x + kReach; ++u)
+      if (inside(u, v)) seen.take(Vec4(beauty_.at(u, v)));
+  const auto takeColumn = [&](const Spot& spot, const Column& column) {
     for (const Face& face : faces) {
       const double first = face.solid < 0 ? kNothing : nearest, last = face.solid < 0 ? kNothing : farthest;
       eachCut(column, face, first, last, [&](const reference::Shown& shown) {
-        light.take(Vec4(shown.light, 0.0));
+        light.take(Vec4(shown.light - shown.lightOff, 0.0));
+        light.take(Vec4(shown.light + shown.lightOff, 0.0));
         passed.take(Vec4(shown.transmission, 0.0));
+        if (shown.bends.empty()) return;
+        // Either surface's colour may be what the others show.
+        seen.take(anySolids_ ? anywhere_ : seenBehind(spot, shown, behind, first, last));
+        for (const Face& one : faces) seen.take(colourOf(one));
       });
     }
   };
   const auto take = [&](double u, double v) {
-    takeColumn(picture_.columnAt(u, v));
-    for (const reference::CutBand& band : bands_) takeColumn(picture_.columnAt(u, v, band));
+    const Spot spot{x, y, {u - x, v - y}};
+    takeColumn(spot, picture_.columnAt(u, v));
+    for (const reference::CutBand& band : bands_) takeColumn(spot, picture_.columnAt(u, v, band));
   };
   samples_.under(x, y, [&](const Sampled& sample, double) { take(sample.x, sample.y); });
   for (const glm::dvec2& place : places_) take(x + place.x, y + place.y);
-  const Vec4 behind(beauty_.at(x, y));
-  const auto with = [&](const Vec4& l, const Vec4& t) {
-    return Vec4(Vec3(l) + Vec3(t) * Vec3(behind), 1.0 - (1.0 - behind.a) * (t.r + t.g + t.b) / 3.0);
+  const auto with = [&](const Vec4& l, const Vec4& t, const Vec4& b) {
+    return Vec4(Vec3(l) + Vec3(t) * Vec3(b), 1.0 - (1.0 - b.a) * (t.r + t.g + t.b) / 3.0);
   };
   Range all;
-  all.take(with(light.low, passed.low));
-  all.take(with(light.high, passed.high));
+  for (const Vec4& b : {seen.low, seen.high}) {
+    all.take(with(light.low, passed.low, b));
+    all.take(with(light.high, passed.high, b));
+  }
   Statement statement{Judged::mixed, 0.5 * (all.low + all.high), 0.5 * (all.high - all.low) + kEdgeRounding, {}};
   return statement;
 }

@@ -121,6 +121,14 @@ std::string raysOf(const Trial& trial, int x, int y) {
     for (const reference::Crossing& crossing : column.crossings)
       told += fmt::format(" mesh {} covers {:.4f} at {:.9g}{}", crossing.mesh, crossing.layer.coverage,
                           crossing.layer.z, crossing.on.solid < 0 ? "" : " on it");
+    const reference::Shown shown = picture.shownBefore(column);
+    told += fmt::format("; light {:.4f} {:.4f} {:.4f}, lets through {:.4f} {:.4f} {:.4f}", shown.light.r, shown.light.g,
+                        shown.light.b, shown.transmission.r, shown.transmission.g, shown.transmission.b);
+    if (!shown.bends.empty()) {
+      const double behind = std::min(column.opaque.z, shown.solidZ);
+      const auto offset = reference::landingOf(scene.numbers.eye, scene.numbers.bending, shown.bends, behind).offset;
+      told += fmt::format(" from ({:.4f}, {:.4f})", offset[1].x, offset[1].y);
+    }
     told += fmt::format("; {:.3g} texels a pixel\n", picture.texelsAPixel(x + place.x, y + place.y));
   }
   return told;

@@ -35,10 +35,11 @@ struct Box {
   glm::dmat3 axes;  // columns, orthonormal
   Vec3 half;
 };
-// Opaque, of one colour.
+// Opaque, of one colour, or with stripes: colour + stripes * sin(dot(across, point)).
 struct Solid {
   std::variant<Plane, Ball, Box> shape;
   Vec3 colour{0.5};
+  Vec3 stripes{0.0}, across{0.0};
 };
 
 // A face of a solid: a box has six of them.
@@ -56,12 +57,30 @@ struct Texels {
 };
 
 enum class Covering { blend, mask };
-// A surface that no light meets: what it shows is its colour, and what it covers lets nothing through. Glass shows what
-// it emits, and what lies behind times its colour.
+// What fills a sheet of glass: light bends where it enters a front.
+struct Filling {
+  double index = 1.0;        // of refraction, inside over outside; 1 bends nothing
+  double dispersion = 0.0;   // 20 over the Abbe number
+  double thickness = 0.0;    // metres along the normal; above 0 where anything fills it
+  double clearness = 1e300;  // metres over which light takes on the colour below
+  Vec3 colour{1.0};
+  bool mirrors = false;  // as a smooth dielectric of this index does
+};
+// How light meets a surface.
+struct Finish {
+  bool lit = false;        // else what is no glass shows its colour
+  double roughness = 0.0;  // glTF's, and its metallic and transmission factors
+  double metal = 0.0;
+  double passes = 1.0;
+};
+// A surface that no light meets shows its colour, and what it covers lets nothing through. Glass shows what it emits,
+// what it reflects, and what lies behind times its colour.
 struct Coat {
   Vec4 colour{1.0};
   bool glass = false;
   Vec3 emission{0.0};  // of glass
+  Filling filling;     // of glass
+  Finish finish;
   Covering covering = Covering::blend;
   double cutoff = 0.5;
   bool bothSides = true;
@@ -89,9 +108,30 @@ struct EvenAir {
   std::optional<Box> inside;  // along the world's axes
 };
 
+// Where bent rays meet what they show.
+struct Bending {
+  enum class Until { never, distance, depth, slab };
+  Until until = Until::depth;
+  double distance = 2.0;  // metres behind the surface, along the eye's axis
+};
+
+// KHR_lights_punctual
+struct PunctualLamp {
+  enum class Kind { sun, point, spot };
+  Kind kind = Kind::point;
+  Vec3 at{0.0}, along{0, 0, -1};            // unit: where its light goes
+  Vec3 intensity{1.0};                      // W/m^2 of a sun, else W/sr
+  double range = 0.0;                       // metres, 0 without an end
+  double innerCone = 0.0, outerCone = 0.7;  // radians
+};
+
 struct PictureScene {
   Eye eye;
   EvenAir air;
+  Bending bending;
+  Vec3 surroundings{0.0};  // radiance from everywhere, that glass mirrors
+  std::vector<PunctualLamp> lamps;
+  bool shadows = false;  // of everything, on what is lit
   std::vector<Solid> solids;
   std::vector<Texels> textures;
   std::vector<Mesh> meshes;

@@ -3,63 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/reference/texels.h"
+#include "tests/reference/triangles.h"
 
 namespace pellucid::reference {
 namespace {
-
-// Where a ray meets a triangle: the shares of its corners, and planar depth.
-struct Within {
-  Vec3 shares;
-  double z;
-  double facing;  // cosine between ray and normal, below 0 from the front
-};
-
-// The volumes that a ray spans with a triangle's edges.
-Vec3 volumesOf(const Ray& ray, const Vec3 (&corners)[3]) {
-  const Vec3 p = corners[0] - ray.from, q = corners[1] - ray.from, r = corners[2] - ray.from;
-  return {glm::dot(ray.along, glm::cross(q, r)), glm::dot(ray.along, glm::cross(r, p)),
-          glm::dot(ray.along, glm::cross(p, q))};
-}
-
-// All of them have one sign where the ray passes between the edges.
-std::optional<Within> meet(const Ray& ray, const Vec3 (&corners)[3]) {
-  const Vec3 volumes = volumesOf(ray, corners);
-  const bool above = volumes.x > 0.0 && volumes.y > 0.0 && volumes.z > 0.0;
-  const bool below = volumes.x < 0.0 && volumes.y < 0.0 && volumes.z < 0.0;
-  if (!above && !below) return std::nullopt;
-  const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double z = glm::dot(normal, corners[0] - ray.from) / glm::dot(normal, ray.along);
-  if (!(z > 0.0)) return std::nullopt;
-  return Within{volumes / (volumes.x + volumes.y + volumes.z), z,
-                glm::dot(normal, ray.along) / (glm::length(normal) * glm::length(ray.along))};
-}
-
-// Of the plane of a triangle, also beyond its edges.
-Vec3 sharesOf(const Ray& ray, const Vec3 (&corners)[3]) {
-  const Vec3 volumes = volumesOf(ray, corners);
-  return volumes / (volumes.x + volumes.y + volumes.z);
-}
-
-// In the texture of a coat.
-Vec2 placeOf(const Mesh& mesh, const std::array<int, 3>& triangle, const Vec3& shares) {
-  Vec2 uv(0.0);
-  for (int k = 0; k < 3; ++k)
-    uv += shares[k] * mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])].uv;
-  return Vec2(mesh.coat.fromUv * Vec3(uv, 1.0));
-}
-
-// Straight colour of a coat.
-Vec4 colourOf(const PictureScene& scene, const Mesh& mesh, const std::array<int, 3>& triangle, const Vec3& shares) {
-  Vec4 colour(0.0);
-  for (int k = 0; k < 3; ++k)
-    colour += shares[k] * mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])].colour;
-  const Coat& coat = mesh.coat;
-  colour *= coat.colour;
-  if (coat.texture >= 0)
-    colour *= texelAt(scene.textures[static_cast<std::size_t>(coat.texture)], placeOf(mesh, triangle, shares));
-  return colour;
-}
 
 // Optical depth of the air between two depths on a ray.
 double airBetween(const EvenAir& air, const Ray& ray, double first, double last) {
@@ -77,10 +24,27 @@ double airBetween(const EvenAir& air, const Ray& ray, double first, double last)
   return air.density * metres * std::max(last - first, 0.0);
 }
 
+constexpr double kOfClear = 0.05;  // of its coverage: what a clear surface weighs in the mean of displacements
+
+bool bends(const PictureScene& scene, const Coat& coat) {
+  const Filling& filling = coat.filling;
+  return coat.glass && filling.thickness > 0.0 && filling.index != 1.0 && scene.bending.until != Bending::Until::never;
+}
+
 }  // namespace
+
+bool hidesAll(const Layer& layer) {
+  return layer.coverage >= 1.0 && layer.transmission == Rgb{};
+}
 
 Picture::Picture(const PictureScene& scene) : scene_(scene) {
   for (const Mesh& mesh : scene_.meshes) {
+    anyBends_ = anyBends_ || bends(scene_, mesh.coat);
+    Ball around{Vec3(0.0), 0.0};
+    for (const Corner& corner : mesh.corners) around.centre += corner.at / static_cast<double>(mesh.corners.size());
+    for (const Corner& corner : mesh.corners)
+      around.radius = std::max(around.radius, 1.000001 * glm::length(corner.at - around.centre));
+    around_.push_back(around);
     bounds_.emplace_back();
     for (const auto& triangle : mesh.triangles) bounds_.back().push_back(boundsOf(mesh, triangle));
   }
@@ -134,6 +98,38 @@ double Picture::texelsAPixel(double x, double y) const {
   return most;
 }
 
+Crossing Picture::crossingOf(const Place& place, const Ray& ray, double z) const {
+  const Coat& coat = place.mesh.coat;
+  const Vec3 toEye = -glm::normalize(ray.along);
+  const double cosine = glm::dot(place.normal, toEye);
+  Crossing crossing{{}, 1.0 / std::abs(cosine), place.mesh.on};
+  Layer& layer = crossing.layer;
+  layer.coverage = place.covered;
+  layer.z = z;
+  Vec3 shows(place.colour), through(0.0);
+  if (coat.glass || coat.finish.lit) {
+    const Finished surface = finishedOf(coat, place.colour);
+    const Reflected lamps = lampLight(place, toEye);
+    shows = coat.emission + reflectedEvenly(surface, std::abs(cosine)) * scene_.surroundings + lamps.light;
+    crossing.lightOff = lamps.off;
+    through = passedPart(surface, std::abs(cosine));
+    if (cosine > 0.0) through *= leftByFilling(coat.filling);
+  }
+  if (cosine > 0.0 && bends(scene_, coat) && through != Vec3(0.0)) {
+    const glm::dmat3 eyeFromWorld = glm::transpose(scene_.eye.axes);
+    const double hidden = place.covered * (1.0 - (through.r + through.g + through.b) / 3.0);
+    crossing.bend = Bend{eyeFromWorld * (place.at - scene_.eye.at),
+                         eyeFromWorld * toEye,
+                         eyeFromWorld * place.normal,
+                         dispersedIndex(coat.filling.index, coat.filling.dispersion),
+                         coat.filling.thickness,
+                         hidden + kOfClear * place.covered};
+  }
+  layer.reflected = {shows.r, shows.g, shows.b};
+  layer.transmission = {through.r, through.g, through.b};
+  return crossing;
+}
+
 Column Picture::columnAt(double x, double y, const CutBand& band) const {
   Column column;
   column.ray = rayThrough(scene_.eye, x, y);
@@ -142,7 +138,7 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
     const Mesh& mesh = scene_.meshes[m];
     eachNear(m, x, y, [&](const std::array<int, 3>& triangle, const Vec3(&corners)[3]) {
       const auto within = meet(column.ray, corners);
-      if (!within || !(within->facing < 0.0 || mesh.coat.bothSides)) return;
+      if (!within || !(within->facing < 0.0 || hasBothSides(mesh.coat))) return;
       const Vec4 colour = colourOf(scene_, mesh, triangle, within->shares);
       double covered = std::clamp(colour.a, 0.0, 1.0);
       if (mesh.coat.covering == Covering::mask) {
@@ -164,12 +160,9 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
         covered = colour.a + side * half >= mesh.coat.cutoff ? 1.0 : 0.0;
       }
       if (!(covered > 0.0)) return;
-      Crossing crossing{{}, 1.0 / std::abs(within->facing), mesh.on, static_cast<int>(m)};
-      crossing.layer.coverage = covered;
-      const Vec3 shows = mesh.coat.glass ? mesh.coat.emission : Vec3(colour);
-      crossing.layer.reflected = {shows.r, shows.g, shows.b};
-      if (mesh.coat.glass) crossing.layer.transmission = {colour.r, colour.g, colour.b};
-      crossing.layer.z = within->z;
+      const Vec3 at = column.ray.from + within->z * column.ray.along;
+      Crossing crossing = crossingOf({mesh, triangle, at, within->normal, colour, covered}, column.ray, within->z);
+      crossing.mesh = static_cast<int>(m);
       column.crossings.push_back(crossing);
     });
   }
@@ -187,24 +180,37 @@ Shown Picture::shownBefore(const Column& column, const Face& face, double z, dou
     shown.transmission *= through;
     reached = std::max(reached, end);
   };
-  for (const Crossing& crossing : column.crossings) {
-    const bool touches = face.solid >= 0 && crossing.on == face;
-    if (!touches && crossing.layer.z > z) continue;
-    passAir(crossing.layer.z);
-    const Layer& layer = crossing.layer;
+  const auto isBefore = [&](const Crossing& crossing) {
+    return (face.solid >= 0 && crossing.on == face) || crossing.layer.z <= z;
+  };
+  const auto solid = std::find_if(column.crossings.begin(), column.crossings.end(), [&](const Crossing& crossing) {
+    return isBefore(crossing) && hidesAll(crossing.layer);
+  });
+  for (auto crossing = column.crossings.begin(); crossing != solid; ++crossing)
+    if (crossing->bend && isBefore(*crossing)) shown.bends.push_back(*crossing->bend);
+  const bool showsSolid = !shown.bends.empty() && solid != column.crossings.end();
+  if (showsSolid) shown.solidZ = solid->layer.z;
+  for (auto crossing = column.crossings.begin(); crossing != (showsSolid ? solid : column.crossings.end());
+       ++crossing) {
+    if (!isBefore(*crossing)) continue;
+    passAir(crossing->layer.z);
+    const Layer& layer = crossing->layer;
     for (std::size_t c = 0; c < 3; ++c) {
       const auto channel = static_cast<glm::length_t>(c);
       shown.light[channel] += shown.transmission[channel] * (layer.coverage * layer.reflected[c] + layer.additive[c]);
+      shown.lightOff[channel] += shown.transmission[channel] * layer.coverage * crossing->lightOff[channel];
       shown.transmission[channel] *= 1.0 - layer.coverage * (1.0 - layer.transmission[c]);
     }
   }
-  passAir(airEnd);
+  passAir(std::min(airEnd, shown.solidZ));
   return shown;
 }
 
 Vec4 Picture::background(const Column& column) const {
   if (column.opaque.face.solid < 0) return Vec4(0.0);
-  return {scene_.solids[static_cast<std::size_t>(column.opaque.face.solid)].colour, 1.0};
+  const Solid& solid = scene_.solids[static_cast<std::size_t>(column.opaque.face.solid)];
+  const Vec3 point = column.ray.from + column.opaque.z * column.ray.along;
+  return {solid.colour + std::sin(glm::dot(solid.across, point)) * solid.stripes, 1.0};
 }
 
 Vec4 Picture::at(const Column& column) const {
