@@ -7,6 +7,16 @@ layout(location = 0) out vec4 nearest;  // MIN; alpha adds
 layout(location = 1) out vec4 steps;    // adds
 #endif
 
+// A caster behind what is opaque leaves nothing but that there was one.
+void writeCulled() {
+#ifdef GREY
+  nearest = vec4(PLD_SHADOW_NOTHING, PLD_SHADOW_NOTHING, -1.0f, 0.0f);
+#else
+  nearest = vec4(PLD_SHADOW_NOTHING, PLD_SHADOW_NOTHING, PLD_SHADOW_NOTHING, 0.0f);
+  steps = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+#endif
+}
+
 //   rho    part of the light hidden, per channel
 //   depth  the map's
 //   key    casterKeyOf()

@@ -20,7 +20,10 @@ void main() {
   if (!(-viewPosition.z > 0.0f) || !(surface.coverage > 0.0f)) discard;
   float depth = mapDepthOf(viewPosition);
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  if (depth > texelFetch(opaqueZ, texel, 0).r + metric.w) discard;
+  if (depth > texelFetch(opaqueZ, texel, 0).r + metric.w) {
+    writeCulled();
+    return;
+  }
 
   vec3 toLight = orthographic != 0 ? vec3(0.0f, 0.0f, 1.0f) : normalize(-viewPosition);
   vec3 normal = normalTowardsEye(viewNormal, gl_FrontFacing, toLight);
