@@ -35,27 +35,27 @@ void shadowTexels(const DrawnBand& band, int channels, glm::vec4* out) {
   });
 }
 
-void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::vec4* out) {
+void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::vec4* out, float* weights) {
   const int width = edge / kShadowDivide, height = band.nearest.height();
   const auto stride = static_cast<std::size_t>(width * channels);
   std::vector<glm::vec4> across(stride * static_cast<std::size_t>(height));
   Image<float> acrossWeight(width, height);
   tbb::parallel_for(0, height, [&](int y) {
     std::vector<glm::vec4> texels(static_cast<std::size_t>(edge));
-    std::vector<float> weights(static_cast<std::size_t>(edge));
-    for (int x = 0; x < edge; ++x) weights[static_cast<std::size_t>(x)] = weightOf(band, channels, x, y);
+    std::vector<float> drawn(static_cast<std::size_t>(edge));
+    for (int x = 0; x < edge; ++x) drawn[static_cast<std::size_t>(x)] = weightOf(band, channels, x, y);
     for (int x = 0; x < width; ++x) {
       float sum = 0.0f;
       const int middle = shading::tentMiddle(x);
       for (int i = -kTentReach; i <= kTentReach; ++i) {
         const bool inside = middle + i >= 0 && middle + i < edge;
-        sum += shading::shadowTent(i) * (inside ? weights[static_cast<std::size_t>(middle + i)] : 1.0f);
+        sum += shading::shadowTent(i) * (inside ? drawn[static_cast<std::size_t>(middle + i)] : 1.0f);
       }
       acrossWeight.at(x, y) = sum;
     }
     for (int c = 0; c < channels; ++c) {
       for (int x = 0; x < edge; ++x)
-        texels[static_cast<std::size_t>(x)] = weights[static_cast<std::size_t>(x)] * texelOf(band, channels, c, x, y);
+        texels[static_cast<std::size_t>(x)] = drawn[static_cast<std::size_t>(x)] * texelOf(band, channels, c, x, y);
       for (int x = 0; x < width; ++x) {
         glm::vec4 sum(0.0f);
         const int middle = shading::tentMiddle(x);
@@ -81,8 +81,29 @@ void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::
         const int from = shading::tentMiddle(y) + j + kTentReach;
         weight += shading::shadowTent(j) * (from < height ? acrossWeight.at(x, from) : 1.0f);
       }
+      weights[static_cast<std::ptrdiff_t>(y) * width + x] = weight;
       if (weight == 1.0f) continue;
       for (int c = 0; c < channels; ++c) row[x * channels + c] /= weight;
+    }
+  });
+}
+
+void fillStopped(const std::vector<float>& weights, int channels, int edge, glm::vec4* texels) {
+  const int width = edge / kShadowDivide;
+  const auto at = [&](int x, int y) { return static_cast<std::ptrdiff_t>(y) * width + x; };
+  const auto stopped = [&](int x, int y) { return weights[static_cast<std::size_t>(at(x, y))] <= kStopped; };
+  tbb::parallel_for(0, width, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      if (!stopped(x, y)) continue;
+      float count = 0.0f;
+      glm::vec4 sums[3] = {glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
+      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, width - 1); ++v)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
+          if (stopped(u, v)) continue;
+          count += 1.0f;
+          for (int c = 0; c < channels; ++c) sums[c] += texels[at(u, v) * channels + c];
+        }
+      for (int c = 0; c < channels && count > 0.0f; ++c) texels[at(x, y) * channels + c] = sums[c] / count;
     }
   });
 }

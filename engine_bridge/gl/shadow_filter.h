@@ -23,6 +23,11 @@ void shadowTexels(const DrawnBand& band, int channels, glm::vec4* out);
 //   band     of the face's rows from firstRow - kTentReach, as many as its image has
 //   edge     of the face as drawn
 //   rows     of the result, each of edge / 4 texels
-void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::vec4* out);
+//   weights  of these: 1, less where some of the drawn texels hold nothing but what light does not come to
+void filterShadow(const DrawnBand& band, int channels, int edge, int rows, glm::vec4* out, float* weights);
+
+// Texels of a whole face to which light does not come at all take what those around them hold, so that a lookup between
+// both finds no light there either.
+void fillStopped(const std::vector<float>& weights, int channels, int edge, glm::vec4* texels);
 
 }  // namespace pellucid::gl

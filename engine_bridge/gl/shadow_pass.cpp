@@ -73,6 +73,7 @@ void MapMaker::transparentFace(const LightView& view, const LightViews& metric, 
   const int channels = drawer_.grey() ? 1 : 3;
   maps.faces.push_back(face(view, edge, shading::shadowGrid(filtered_), channels));
   drawer_.begin({view, metric.radial, metric.scale, metric.offset, edge, seed});
+  std::vector<float> weights;
   for (int first = 0; first < edge; first += kBandRows) {
     const int rows = std::min(kBandRows, edge - first);
     auto start = Clock::now();
@@ -82,14 +83,19 @@ void MapMaker::transparentFace(const LightView& view, const LightViews& metric, 
     start = Clock::now();
     if (filtered_) {
       const int kept = edge / gl::kShadowDivide, keptRows = rows / gl::kShadowDivide;
+      const std::size_t known = weights.size();
+      weights.resize(known + static_cast<std::size_t>(kept) * static_cast<std::size_t>(keptRows));
       gl::filterShadow(band, channels, edge, keptRows,
-                       grow(static_cast<std::size_t>(kept) * static_cast<std::size_t>(keptRows * channels)));
+                       grow(static_cast<std::size_t>(kept) * static_cast<std::size_t>(keptRows * channels)),
+                       &weights[known]);
     } else {
       gl::shadowTexels(band, channels,
                        grow(static_cast<std::size_t>(edge) * static_cast<std::size_t>(rows * channels)));
     }
     statistics.filterSeconds += secondsSince(start);
   }
+  if (filtered_)
+    gl::fillStopped(weights, channels, edge, &maps.texels[static_cast<std::size_t>(maps.faces.back().extent.x)]);
   statistics.triangles = drawer_.triangles();
 }
 
