@@ -97,7 +97,7 @@ class RowOfEntries {
     FragmentLists& row = held_.lists;
     row.window = {0, 0, static_cast<int>(solids_.size()), 1};
     row.solid = Image<glm::vec4>(row.window.width(), 1);
-    std::copy(solids_.begin(), solids_.end(), row.solid.row(0));
+    std::copy(solids_.begin(), solids_.end(), row.solid.data());
     return std::move(held_);
   }
 
