@@ -21,8 +21,8 @@ LEAST = 1e-6  # of an error: below it no weight is better than another
 
 
 def measured(program, stem, size, flags):
-    words = [program, "composite", f"{stem}.exr", f"{stem}.glb", "-o", f"{stem}-out.exr", "--method", "phenomenological",
-             "--measure", "--aa", "1", "--unit", repr(size), "--scene-unit", repr(size), *flags]
+    words = [program, "composite", f"{stem}.exr", f"{stem}.glb", "-o", f"{stem}-out.exr",
+             "--method", "phenomenological", "--measure", "--aa", "1", "--unit", repr(size), "--scene-unit", repr(size), *flags]
     ended = subprocess.run(words, capture_output=True, text=True)
     if ended.returncode != 0:
         sys.exit(f"{' '.join(words)}: ended with {ended.returncode}: {ended.stderr}")

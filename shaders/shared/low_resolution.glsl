@@ -71,8 +71,8 @@ struct SurfaceNear {
   bool inverse;  // 1/z is linear, as with perspective; else z
 };
 
-// Change and bend along one axis, of the three neighbours in a row that bend least; a bend of 1 where none go on, neither
-// straight nor with one bend.
+// Change and bend along one axis, of the three neighbours in a row that bend least; a bend of 1 where none go on,
+// neither straight nor with one bend.
 //   around  2 and 1 pixels before, 1 and 2 after, as parts of the pixel's own value
 PLD_FN vec2 changeAlong(vec4 around) {
   precise float left = around.x - 2.0f * around.y + 1.0f;
