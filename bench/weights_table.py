@@ -6,7 +6,8 @@
 Every sample is composited by the phenomenological sums with each listed weight at 10^-3, 1 and 10^3 times its size, and
 with the fitted one. Weights that read a range get that of the scene's transparent things, as an engine's camera knows
 it, rounded out by a tenth; the papers' constants stay in metres. A row is the mean error over that of the best listed
-weight on the same sample, size by size, as the geometric mean of all samples, and at worst.
+weight on the same sample, size by size, as the geometric mean of all samples, and at worst; and by how much it differs
+between the sizes of a sample at most, which is nothing for what has no length in it.
 """
 import math, re, subprocess, sys
 from pathlib import Path
@@ -38,8 +39,10 @@ def main():
     height = sys.argv[4] if len(sys.argv) > 4 else "135"
     folder.mkdir(parents=True, exist_ok=True)
     logs = {weight: [] for weight in ["auto"] + WEIGHTS}
+    apart = {weight: 0.0 for weight in logs}
     for sample in SAMPLES:
         subprocess.run([samples, str(folder), sample, height], check=True, stdout=subprocess.DEVNULL)
+        of_sizes = {weight: [] for weight in logs}
         for size in SIZES:
             fitted = measured(program, folder / sample, size, ["--weight", "auto"])
             near, far = re.search(r"([0-9.e+-]+) to ([0-9.e+-]+) m away", fitted.stderr).groups()
@@ -52,9 +55,12 @@ def main():
             errors["auto"] = max(error_of(fitted), LEAST)
             for weight, error in errors.items():
                 logs[weight].append(math.log(error / best))
-    print("| weight | error over the best listed one's | at worst |\n| --- | --- | --- |")
+                of_sizes[weight].append(error)
+        for weight, found in of_sizes.items():
+            apart[weight] = max(apart[weight], max(found) / min(found) - 1.0)
+    print("| weight | error over the best listed one's | at worst | sizes differ by |\n| --- | --- | --- | --- |")
     for weight, values in sorted(logs.items(), key=lambda row: sum(row[1])):
-        print(f"| `{weight}` | {math.exp(sum(values) / len(values)):.2f} | {math.exp(max(values)):.2f} |")
+        print(f"| `{weight}` | {math.exp(sum(values) / len(values)):.2f} | {math.exp(max(values)):.2f} | {100.0 * apart[weight]:.2g}% |")
 
 
 if __name__ == "__main__":
