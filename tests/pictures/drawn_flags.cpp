@@ -73,7 +73,7 @@ void drawAir(const reference::PictureScene& scene, Random& random, DrawnFlags& f
   }
   const double part = lit ? air.light.r / around.r : random.between(0.3, 1.0);
   std::string fog = fmt::format("--fog=density={},albedo={}", air.density, part);
-  if (air.farthest != reference::EvenAir().farthest) fog += fmt::format(",far={}", air.farthest);
+  if (air.farthest) fog += fmt::format(",far={}", *air.farthest);
   if (air.inside) {
     const reference::Vec3 low = air.inside->centre - air.inside->half, high = air.inside->centre + air.inside->half;
     fog += fmt::format(",box={}:{}:{}:{}:{}:{}", low.x, low.y, low.z, high.x, high.y, high.z);

@@ -100,11 +100,15 @@ struct Mesh {
   Face on;  // on which all of it lies, if any: there it is in front, whatever its corners round to
 };
 
+constexpr double kAirBeforeNothing = 1000.0;  // metres
+
 // Even fog under even light, up to what is opaque.
 struct EvenAir {
-  double density = 0.0;       // extinction of a metre
-  Vec3 light{0.0};            // that all of it would show
-  double farthest = 1000.0;   // metres from the eye, or from the eye's plane, beyond which there is none
+  double density = 0.0;  // extinction of a metre
+  Vec3 light{0.0};       // that all of it would show
+  // Metres from the eye, or from the eye's plane, beyond which there is none; without it kAirBeforeNothing before
+  // nothing, and all of it before what is opaque.
+  std::optional<double> farthest;
   std::optional<Box> inside;  // along the world's axes
 };
 

@@ -9,9 +9,10 @@ namespace pellucid::reference {
 namespace {
 
 // Optical depth of the air between two depths on a ray.
-double airBetween(const EvenAir& air, const Ray& ray, double first, double last) {
+//   farthest  metres, beyond which there is none
+double airBetween(const EvenAir& air, double farthest, const Ray& ray, double first, double last) {
   const double metres = glm::length(ray.along);
-  last = std::min(last, air.farthest / metres);
+  last = std::min(last, farthest / metres);
   for (int axis = 0; axis < 3 && air.inside; ++axis) {
     const double from = ray.from[axis] - air.inside->centre[axis], way = ray.along[axis], half = air.inside->half[axis];
     if (way == 0.0) {
@@ -24,6 +25,7 @@ double airBetween(const EvenAir& air, const Ray& ray, double first, double last)
   return air.density * metres * std::max(last - first, 0.0);
 }
 
+constexpr double kFarAway = 1e30;  // metres: farther than anything
 constexpr double kOfClear = 0.05;  // of its coverage: what a clear surface weighs in the mean of displacements
 
 bool bends(const PictureScene& scene, const Coat& coat) {
@@ -174,8 +176,12 @@ Column Picture::columnAt(double x, double y, const CutBand& band) const {
 Shown Picture::shownBefore(const Column& column, const Face& face, double z, double airEnd) const {
   Shown shown;
   double reached = 0.0;
+  const bool endsOnNothing =
+      airEnd == kNothing && std::none_of(column.crossings.begin(), column.crossings.end(),
+                                         [](const Crossing& crossing) { return hidesAll(crossing.layer); });
+  const double farthest = scene_.air.farthest.value_or(endsOnNothing ? kAirBeforeNothing : kFarAway);
   const auto passAir = [&](double end) {
-    const double through = std::exp(-airBetween(scene_.air, column.ray, reached, std::min(end, airEnd)));
+    const double through = std::exp(-airBetween(scene_.air, farthest, column.ray, reached, std::min(end, airEnd)));
     shown.light += shown.transmission * (1.0 - through) * scene_.air.light;
     shown.transmission *= through;
     reached = std::max(reached, end);
