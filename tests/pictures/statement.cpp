@@ -76,7 +76,9 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
   }
   for (const reference::Mesh& mesh : picture.scene().meshes) {
     const bool covers = mesh.coat.covering == reference::Covering::mask || mesh.coat.colour.a >= 1.0;
-    anySolids_ = anySolids_ || (!mesh.coat.glass && covers);
+    // Metal lets nothing through, whatever its transmission.
+    const bool tight = !mesh.coat.glass || mesh.coat.finish.metal >= 1.0 || mesh.coat.finish.passes <= 0.0;
+    anySolids_ = anySolids_ || (tight && covers);
   }
   for (const reference::Solid& solid : picture.scene().solids) striped_ = striped_ || solid.stripes != Vec3(0.0);
   if (anySolids_) {

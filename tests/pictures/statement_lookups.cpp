@@ -39,7 +39,8 @@ std::vector<Statements::Texel> Statements::backdropOf(int x, int y, const Column
     if (exactly && !touches && at > z) break;
     if (!exactly && off != reference::kNothing && !touches && at > z * (1.0 + off) + 4.0 * rounding_) break;
     const auto& shows = crossing.layer.reflected;
-    texels.push_back({Vec4(shows[0], shows[1], shows[2], 1.0), at});
+    const auto& glows = crossing.layer.additive;
+    texels.push_back({Vec4(shows[0] + glows[0], shows[1] + glows[1], shows[2] + glows[2], 1.0), at});
     const bool clearlyBefore = off != reference::kNothing && at < z * (1.0 - off) - 4.0 * rounding_ * crossing.steep;
     if (exactly || touches || clearlyBefore) return texels;
   }
