@@ -26,7 +26,7 @@ struct LowView {
   GBuffer gbuffer;  // viewZ alone
   Camera camera;
   Image<float> opaqueZ;                 // of the pixels: what stands behind all layers, planar metres
-  const DepthPlanes* planes = nullptr;  // of all pixels, which tell what touches them; null: surfaces face the eye
+  const DepthPlanes* planes = nullptr;  // of all pixels, which tell what touches them; null: the depths around do
 };
 
 //   solid   nearest fragments that hide everything among the layers of full resolution: rgb, planar z
