@@ -54,6 +54,27 @@ void EdgePasses::depthAt(int pass, Image<float>& viewZ) const {
   }
 }
 
+EdgeTexels EdgePasses::texelsOf(int pass, const Image<glm::vec4>& picture) const {
+  std::vector<EdgeTexel> texels;
+  texels.reserve(edges_.size());
+  for (const auto& [pixel, nearerPasses, seesNearer] : edges_) {
+    const glm::vec4& whole = picture.at(pixel.x, pixel.y);
+    const auto share = static_cast<float>(pixel.share);
+    const glm::vec3 nearer = glm::vec3(whole) * pixel.nearerPart / share,
+                    farther = glm::vec3(whole) * (1.0f - pixel.nearerPart) / (1.0f - share);
+    // What of the pixel's colour is a small share of it tells no colour; shadows dim both surfaces as they dim the
+    // pixel.
+    glm::vec3 alone = pixel.fartherAlone;
+    for (int c = 0; c < 3; ++c)
+      if (whole[c] != pixel.whole[c] && pixel.whole[c] > 0.0f) alone[c] *= whole[c] / pixel.whole[c];
+    const bool sees = seesNearer[static_cast<std::size_t>(pass)];
+    texels.push_back({pixel.x, pixel.y, whole,
+                      sees ? glm::vec4(nearer, pixel.nearerAlpha) : glm::vec4(farther, pixel.fartherAlpha),
+                      glm::vec4(alone, pixel.fartherAlpha), static_cast<float>(pixel.nearer.z(0.0, 0.0))});
+  }
+  return {std::move(texels), picture.width(), picture.height()};
+}
+
 EdgePasses::Part EdgePasses::partOf(const Edge& edge, int pass) const {
   const bool nearer = edge.seesNearer[static_cast<std::size_t>(pass)];
   const auto count = static_cast<float>(samples_.size());

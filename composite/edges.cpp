@@ -218,6 +218,8 @@ void takeApart(const glm::dvec4& colour, const glm::dvec4& nearer, const glm::dv
   const glm::dvec4 part = f * (nearer + f * rest);
   for (int c = 0; c < 3; ++c)
     edge.nearerPart[c] = static_cast<float>(colour[c] > 0.0 ? std::clamp(part[c] / colour[c], 0.0, 1.0) : f);
+  edge.whole = glm::vec3(colour);
+  edge.fartherAlone = glm::vec3(farther);
   edge.alpha = static_cast<float>(colour.a);
   const double least = std::max(0.0, (colour.a - g) / f),
                most = std::min(1.0, colour.a / f);  // else the other's is none

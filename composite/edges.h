@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "composite/gather.h"
 #include "composite/veil.h"
 #include "gbuffer/depth_plane.h"
 
@@ -19,10 +20,12 @@ struct PlaneNear {
 };
 
 struct EdgePixel {
-  int x = 0, y = 0;            // of the data window
-  double share = 0.0;          // of the nearer surface in the pixel, (0,1)
-  glm::vec3 nearerPart{0.0f};  // of the pixel's colour, per channel, [0,1]; the rest is the farther surface's
-  float alpha = 1.0f;          // the pixel's, and those of its surfaces
+  int x = 0, y = 0;              // of the data window
+  double share = 0.0;            // of the nearer surface in the pixel, (0,1)
+  glm::vec3 nearerPart{0.0f};    // of the pixel's colour, per channel, [0,1]; the rest is the farther surface's
+  glm::vec3 whole{0.0f};         // that colour
+  glm::vec3 fartherAlone{0.0f};  // of the farther surface, where pixels show nothing else
+  float alpha = 1.0f;            // the pixel's, and those of its surfaces
   float nearerAlpha = 1.0f, fartherAlpha = 1.0f;
   PlaneNear nearer, farther;
   // Either surface goes behind the other where they meet, as a floor and its wall: whichever is nearer is seen there.
@@ -50,6 +53,9 @@ class EdgePasses {
 
   // Puts the depth of the surface that the pass sees into the edge pixels.
   void depthAt(int pass, Image<float>& viewZ) const;
+  // What the pass's layers look up of them.
+  //   picture  of the data window
+  EdgeTexels texelsOf(int pass, const Image<glm::vec4>& picture) const;
   // Puts the pass's weight in the edge pixels, 1 in the mean of all passes.
   void weightAt(int pass, Image<float>& weight) const;
   // Makes the plain mean of all passes' veils the weighted one.

@@ -45,6 +45,20 @@ BackdropView PassBackdrop::of(const GBuffer& gbuffer, const Image<glm::vec4>& so
   return own_;
 }
 
+EdgeTexels::EdgeTexels(std::vector<EdgeTexel> texels, int width, int height)
+    : texels_(std::move(texels)),
+      known_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), false),
+      width_(width) {
+  for (const EdgeTexel& texel : texels_)
+    known_[static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(texel.x)] =
+        true;
+}
+
+const EdgeTexel& EdgeTexels::find(const glm::ivec2& pixel) const {
+  return *std::lower_bound(texels_.begin(), texels_.end(), pixel,
+                           [](const EdgeTexel& a, const glm::ivec2& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+}
+
 namespace {
 
 struct Spreading {
@@ -116,8 +130,9 @@ Columns tapsOf(shading::LookupText& text) {
 namespace shading {
 
 LookupText::LookupText(const BackdropView& seen, const OitPlanes& scattering, const LookupSettings& settings,
-                       ivec2 place) {
+                       ivec2 place, const EdgeTexels* edgesOfPicture) {
   backdrop = seen;
+  edges = edgesOfPicture && !edgesOfPicture->empty() ? edgesOfPicture : nullptr;
   planes = &scattering;
   placeOfPlanes = place;
   choice.kernel = settings.kernel;
@@ -144,11 +159,21 @@ LookupText::LookupText(const BackdropView& seen, const OitPlanes& scattering, co
 
 struct Lookups::Text : shading::LookupText {
   using LookupText::LookupText;
+  struct Way {
+    shading::Path path;
+    glm::vec4 dispersion;
+  };
+  // Of a pixel of the planes.
+  Way wayOf(int x, int y) const {
+    const glm::vec4& refraction = planes->refraction.at(x, y);
+    return {shading::pathOf(refraction, planes->light.at(x, y).a, planes->diffuseZ.at(x, y)),
+            planes->disperses() ? shading::dispersionOf(planes->dispersion.at(x, y), refraction.z) : glm::vec4(0.0f)};
+  }
 };
 
 Lookups::Lookups(const BackdropView& backdrop, const OitPlanes& planes, const LookupSettings& settings,
-                 glm::ivec2 place)
-    : text_(new Text(backdrop, planes, settings, place)) {}
+                 glm::ivec2 place, const EdgeTexels* edges)
+    : text_(new Text(backdrop, planes, settings, place, edges)) {}
 
 Lookups::~Lookups() = default;
 
@@ -157,13 +182,25 @@ bool Lookups::scattersAt(int x, int y) const {
   return refraction.z > 0.0f || refraction.w > 0.0f;
 }
 
+bool Lookups::meetsEdges(int x, int y) const {
+  if (!text_->edges) return false;
+  const auto [path, dispersion] = text_->wayOf(x, y);
+  const glm::ivec2 pixel = text_->placeOfPlanes + glm::ivec2(x, y);
+  const glm::vec2 bends[] = {path.offset, path.offset + glm::vec2(dispersion.x, dispersion.y),
+                             path.offset + glm::vec2(dispersion.z, dispersion.w)};
+  bool meets = text_->edges->at(pixel);
+  for (const glm::vec2& offset : bends)
+    for (const glm::ivec2 beside : {glm::ivec2(-1, -1), glm::ivec2(0, -1), glm::ivec2(-1, 0), glm::ivec2(0, 0)}) {
+      const glm::ivec2 at = glm::ivec2(glm::floor(glm::vec2(pixel) + 1.0f + offset)) + beside;
+      meets = meets || text_->edges->at(glm::clamp(at, glm::ivec2(0), {text_->width() - 1, text_->height() - 1}));
+    }
+  return meets;
+}
+
 glm::vec4 Lookups::at(int x, int y) const {
-  const OitPlanes& planes = *text_->planes;
-  const glm::vec4& refraction = planes.refraction.at(x, y);
-  const shading::Path path = shading::pathOf(refraction, planes.light.at(x, y).a, planes.diffuseZ.at(x, y));
-  const glm::vec4 dispersion =
-      planes.disperses() ? shading::dispersionOf(planes.dispersion.at(x, y), refraction.z) : glm::vec4(0.0f);
-  return text_->lookupAt(text_->choice, path, dispersion, text_->placeOfPlanes + glm::ivec2(x, y));
+  const auto [path, dispersion] = text_->wayOf(x, y);
+  const glm::ivec2 pixel = text_->placeOfPlanes + glm::ivec2(x, y);
+  return text_->lookupAt(text_->choice, path, dispersion, pixel, text_->ownColour(pixel));
 }
 
 }  // namespace pellucid

@@ -39,6 +39,36 @@ class PassBackdrop {
   std::vector<std::size_t> covered_;  // pixels of it
 };
 
+// A pixel whose colour is filtered over an edge. Its own layers show the surface that the pass sees. Layers of other
+// pixels show the farther surface alone where they see the pixel's centre, and the nearer one stands before them.
+// Colours are scene-linear, premultiplied, and alpha.
+struct EdgeTexel {
+  int x, y;           // of the picture
+  glm::vec4 whole;    // the pixel's colour in the picture
+  glm::vec4 seen;     // of the surface that the pass sees
+  glm::vec4 farther;  // of the farther surface
+  float nearerZ;
+};
+
+class EdgeTexels {
+ public:
+  EdgeTexels() = default;
+  //   texels  row by row
+  EdgeTexels(std::vector<EdgeTexel> texels, int width, int height);
+  bool empty() const { return texels_.empty(); }
+  bool at(const glm::ivec2& pixel) const {
+    return known_[static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(width_) +
+                  static_cast<std::size_t>(pixel.x)];
+  }
+  // Of a pixel that has one.
+  const EdgeTexel& find(const glm::ivec2& pixel) const;
+
+ private:
+  std::vector<EdgeTexel> texels_;
+  std::vector<bool> known_;  // by pixel
+  int width_ = 0;
+};
+
 struct LookupSettings {
   int kernel = shading::PLD_DIFFUSE_GAUSSIAN;
   // Every tap of the kernel: cost grows as D^2. Else the Gaussian reads a pyramid, at a cost that no D changes.
@@ -56,11 +86,14 @@ class Lookups {
  public:
   // All must outlive this. `planes` scatters() and lies in the backdrop; beyond it nothing scatters.
   //   place  of the planes' first pixel, in pixels of the backdrop
+  //   edges  of the backdrop's picture; null: none are known
   Lookups(const BackdropView& backdrop, const OitPlanes& planes, const LookupSettings& settings,
-          glm::ivec2 place = glm::ivec2(0));
+          glm::ivec2 place = glm::ivec2(0), const EdgeTexels* edges = nullptr);
   ~Lookups();
 
   bool scattersAt(int x, int y) const;
+  // Whether some edge lies where the pixel's rays are bent to.
+  bool meetsEdges(int x, int y) const;
   glm::vec4 at(int x, int y) const;
 
  private:

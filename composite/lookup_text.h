@@ -15,6 +15,7 @@ enum TapPlane { kTapColour, kTapDepth = 4, kTapVariance, kTapPlanes };
 // What the text reads.
 struct LookupSource {
   BackdropView backdrop;
+  const EdgeTexels* edges = nullptr;  // none of no texel
   const OitPlanes* planes = nullptr;
   ivec2 placeOfPlanes = ivec2(0);              // their first pixel, in the backdrop
   Window diffusing = {};                       // pixels of the backdrop, all that diffuse among them
@@ -33,6 +34,19 @@ struct GatherText : LookupSource {
   }
   const vec4& backdropColour(ivec2 pixel) const { return clampedAt(*backdrop.colour, pixel); }
   float backdropDepth(ivec2 pixel) const { return clampedAt(*backdrop.z, pixel); }
+  vec4 ownColour(ivec2 pixel) const {
+    const vec4& behind = backdropColour(pixel);
+    if (!edges || !edges->at(pixel)) return behind;
+    const EdgeTexel& edge = edges->find(pixel);
+    return edge.whole == behind ? edge.seen : behind;
+  }
+  vec4 colourBehind(ivec2 pixel, float layerZ) const {
+    const ivec2 held(std::clamp(pixel.x, 0, width() - 1), std::clamp(pixel.y, 0, height() - 1));
+    const vec4& behind = backdropColour(held);
+    if (!edges || !edges->at(held)) return behind;
+    const EdgeTexel& edge = edges->find(held);
+    return edge.whole == behind && standsInFront(edge.nearerZ, layerZ) ? edge.farther : behind;
+  }
   float spreadAt(ivec2 pixel) const {
     const int x = std::clamp(pixel.x, 0, width() - 1) - placeOfPlanes.x,
               y = std::clamp(pixel.y, 0, height() - 1) - placeOfPlanes.y;
@@ -59,7 +73,8 @@ struct LookupText : GatherText {
 
   // All must outlive this.
   //   place  of the planes' first pixel, in pixels of the backdrop
-  LookupText(const BackdropView& seen, const OitPlanes& scattering, const LookupSettings& settings, ivec2 place);
+  LookupText(const BackdropView& seen, const OitPlanes& scattering, const LookupSettings& settings, ivec2 place,
+             const EdgeTexels* edgesOfPicture = nullptr);
   Gathered gatherSpread(LookupChoice settings, vec2 centre, float variance, float layerZ);
 
 #define PLD_FN inline

@@ -103,6 +103,14 @@ void hideSolids(FragmentLists& lists, const OitPlanes& planes) {
   lists.fragments.resize(kept);
 }
 
+void showThroughAt(const Lookups& lookups, int x, int y, Veil& veil) {
+  const glm::vec3 transmission = veil.transmission.at(x, y);
+  const glm::vec4 background = lookups.at(x, y);
+  veil.direct.at(x, y) = glm::vec3(0.0f);
+  veil.applied.at(x, y) = glm::vec4(transmission * shading::throughOnly(transmission, glm::vec3(background)),
+                                    shading::meanOf(transmission) * (1.0f - background.a));
+}
+
 void showThrough(const Lookups& lookups, Veil& veil) {
   veil.addScatter();
   tbb::parallel_for(tbb::blocked_range<int>(0, veil.touched.height()), [&](const tbb::blocked_range<int>& rows) {
@@ -110,24 +118,20 @@ void showThrough(const Lookups& lookups, Veil& veil) {
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < veil.touched.width(); ++x) {
         if (!veil.touched.at(x, y) || !lookups.scattersAt(x, y)) continue;
-        const glm::vec3 transmission = veil.transmission.at(x, y);
-        const glm::vec4 background = lookups.at(x, y);
-        veil.direct.at(x, y) = glm::vec3(0.0f);
-        veil.applied.at(x, y) = glm::vec4(transmission * shading::throughOnly(transmission, glm::vec3(background)),
-                                          shading::meanOf(transmission) * (1.0f - background.a));
+        showThroughAt(lookups, x, y, veil);
       }
   });
 }
 
 Veil resolveOver(OitPlanes planes, const ResolveSettings& settings, const LookupSettings& lookup,
-                 const GBuffer& background) {
+                 const GBuffer& background, const EdgeTexels* edges) {
   const glm::ivec2 place(planes.data.x0 - background.data.x0, planes.data.y0 - background.data.y0);
   PassBackdrop backdrops;
   const BackdropView backdrop = planes.scatters() ? backdrops.of(background, planes.solid, place) : BackdropView();
   hideSolids(planes);
   Veil veil = resolve(planes, settings);
   veil.place = place;
-  if (planes.scatters()) showThrough(Lookups(backdrop, planes, lookup, place), veil);
+  if (planes.scatters()) showThrough(Lookups(backdrop, planes, lookup, place, edges), veil);
   return veil;
 }
 

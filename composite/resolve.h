@@ -33,10 +33,13 @@ bool hidesSolids(const FragmentLists& lists, const OitPlanes& planes);
 
 // Applies the background to the pixels of the veil that refract or diffuse; the others are left alone.
 void showThrough(const Lookups& lookups, Veil& veil);
+// The same for one that does.
+void showThroughAt(const Lookups& lookups, int x, int y, Veil& veil);
 
 // The steps above in their order, of planes of all of the background's window or of a part of it.
+//   edges  of the background; null: none are known
 Veil resolveOver(OitPlanes planes, const ResolveSettings& settings, const LookupSettings& lookup,
-                 const GBuffer& background);
+                 const GBuffer& background, const EdgeTexels* edges = nullptr);
 
 struct Picture {
   Image<glm::vec4> rgba;  // scene-linear, premultiplied; equals the background where touched is 0

@@ -254,7 +254,8 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
   PassSettings pass = settings;
   const Window& data = run.lighting->picture.gbuffer->data;
   const Window area = motion.moves() ? data : paintedArea(plan, run);
-  const std::unique_ptr<EdgePasses> edges = edgePasses(plan, area);
+  // Bent rays may meet any of them.
+  const std::unique_ptr<EdgePasses> edges = edgePasses(plan, run.sources->mayScatter(pass) ? data : area);
   if (area != data) pass.area = area;  // else passes at other resolutions take the settings too
   PassPicture moving(run.lighting->picture, depthPlanes(plan, area), edges.get(), triangles(), shot_->camera, area);
   if (unseen) moving.countUnseen();

@@ -15,6 +15,7 @@ struct LitPicture {
   const DeepOpaque* deepOpaque = nullptr;  // null for a flat picture
   const DepthPlanes* planes = nullptr;     // of the depth at pixel centres, where a pass sees it from there
   const Image<float>* passWeight = nullptr;  // of the pass in each pixel's mean; null: as much as any other
+  const EdgeTexels* edges = nullptr;         // that bent rays may meet in it; null: none are known
 };
 
 struct Lighting {

@@ -35,6 +35,7 @@ PassPicture::PassPicture(const LitPicture& centres, const DepthPlanes* planes, c
   if (!edges_ || edges_->empty()) return;
   passWeight_ = Image<float>(moved_.data.width(), moved_.data.height(), 1.0f);
   picture_.passWeight = &passWeight_;
+  picture_.edges = &edgeTexels_;
 }
 
 PassPicture::~PassPicture() {
@@ -82,6 +83,7 @@ void PassPicture::moveTo(glm::dvec2 sample, int pass, const LitPicture* lit) {
   if (edges_) {
     edges_->depthAt(pass, moved_.viewZ);
     if (picture_.passWeight) edges_->weightAt(pass, passWeight_);
+    if (picture_.edges) edgeTexels_ = edges_->texelsOf(pass, picture_.centres->beauty);
   }
   if (triangles_) triangles_->over(moved_, camera_);
 }

@@ -50,6 +50,7 @@ class PassPicture {
   std::optional<SamplePlanes> samplePlanes_;  // of a deep picture
   DeepOpaque movedDeep_;
   Image<float> passWeight_;
+  EdgeTexels edgeTexels_;
   Image<int> unseen_;  // passes; empty while nobody asks
   int counted_ = 0;
   LitPicture picture_;

@@ -241,11 +241,13 @@ ResolvePass* resolverFor(const PlanesRequest& request, const ResolveSettings& se
 
 // One pass of a flat picture.
 //   gbuffer  as it is lit in the pass
+//   met      edges that bent rays may meet in it; null: none
 Veil veilOfPixels(const PlanesRequest& request, PassPlanes& pass, const ResolveSettings& settings,
-                  const GBuffer& gbuffer, const GBuffer& occluding, ResolvePass* resolver, Journal& journal) {
+                  const GBuffer& gbuffer, const GBuffer& occluding, const EdgeTexels* met, ResolvePass* resolver,
+                  Journal& journal) {
   journal.time("occlusion of leaves", [&] { occludeRims(request.rims, pass.rims, occluding, pass.planes, journal); });
-  return journal.time("resolve",
-                      [&] { return resolveSums(resolver, std::move(pass.planes), settings, request.lookup, gbuffer); });
+  return journal.time(
+      "resolve", [&] { return resolveSums(resolver, std::move(pass.planes), settings, request.lookup, gbuffer, met); });
 }
 
 // Reads the picture that the planes belong to, and checks that they do.
@@ -297,17 +299,20 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   SeenPicture picture(gbuffer, passes, wantsUnseen && !deep);
   VeilMean mean;
   MovingLight moving;
+  std::optional<EdgeTexels> met;
   for (std::size_t i = 0; i < passes.size(); ++i) {
     PassPlanes& pass = passes[i];
     std::optional<GBuffer> lit;  // where the pass has light of its own
     if (!pass.now.empty()) lightBy(pass.now, lit.emplace(gbuffer));
     const GBuffer& background = lit ? *lit : gbuffer;
+    if (edges) met = edges->texelsOf(static_cast<int>(i), background.beauty);
     Veil veil =
         deep
             ? journal.time(
                   "resolve",
                   [&] { return resolvePlaces(pass.planes, pass.scatter, settings, request.lookup, *deep, background); })
-            : veilOfPixels(request, pass, settings, background, picture.seenBy(pass, i), resolver, journal);
+            : veilOfPixels(request, pass, settings, background, picture.seenBy(pass, i), met ? &*met : nullptr,
+                           resolver, journal);
     if (edges) edges->weigh(static_cast<int>(i), veil);
     moving.add(veil, lit ? &lit->beauty : nullptr, gbuffer.beauty);
     mean.add(std::move(veil));

@@ -7,6 +7,6 @@ namespace pellucid {
 
 // As resolveOver(); the CPU does it where `device` is null.
 Veil resolveSums(ResolvePass* device, OitPlanes planes, const ResolveSettings& settings, const LookupSettings& lookup,
-                 const GBuffer& background);
+                 const GBuffer& background, const EdgeTexels* edges = nullptr);
 
 }  // namespace pellucid

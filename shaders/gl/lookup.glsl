@@ -64,6 +64,9 @@ float backdropDepth(ivec2 pixel) {
 #endif
 }
 
+// No pixel is known to hold two surfaces.
+vec4 colourBehind(ivec2 pixel, float layerZ) { return backdropColour(pixel); }
+
 float spreadAt(ivec2 pixel) { return pathSumsAt(inPicture(pixel)).w; }
 
 #include "shared/gather.glsl"

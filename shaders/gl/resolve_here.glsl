@@ -116,7 +116,7 @@ vec4 appliedAt(ivec2 pixel, vec4 path, vec3 transmission) {
   float refractionZ = REFRACTION_Z(TEXEL_HERE);
   vec2 depths = vec2(refractionZ, diffuseZ);
 #endif
-  vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel);
+  vec4 seen = lookupAt(choice, pathOf(path, depths.x, depths.y), dispersion, pixel, backdropColour(pixel));
   precise vec3 shown = transmission * throughOnly(transmission, vec3(seen));
   precise float hole = meanOf(transmission) * (1.0f - seen.a);
   return vec4(shown, hole);

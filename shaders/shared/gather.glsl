@@ -3,6 +3,7 @@
 // by these functions of pixels or texels, whose coordinates are clamped to the picture by the callee:
 //   vec4 backdropColour(ivec2 pixel)            scene-linear, premultiplied, and alpha; perhaps not finite
 //   float backdropDepth(ivec2 pixel)            planar metres, +inf for nothing
+//   vec4 colourBehind(ivec2 pixel, float layerZ)     the colour, for a layer that does not stand behind the pixel's depth
 //   float spreadAt(ivec2 pixel)                 D^2, pixels^2
 //   SpreadTexel spreadTexel(int level, ivec2 texel)  of the pyramid, level >= 1
 //   SpreadBody spreadBody(int level, ivec2 texel)    its sums alone
@@ -54,16 +55,20 @@ PLD_FN bool tapShows(ivec2 pixel, vec4 colour, float layerZ) {
   return isFiniteColour(colour) && !standsInFront(backdropDepth(pixel), layerZ);
 }
 
+// For the layers of a pixel. What the eye sees straight behind them is never in front of them, whatever depth the
+// pixel's centre has: it leans, and is rounded, while the layers are met where a pass samples the pixel.
 //   position  pixels, +0.5 at a pixel's centre
-PLD_FN Gathered gatherBilinear(vec2 position, float layerZ) {
+//   own       what the pixel itself shows straight behind its layers
+PLD_FN Gathered gatherBilinear(vec2 position, float layerZ, ivec2 ownPixel, vec4 own) {
   Footprint footprint = footprintAt(position);
   Gathered sum = nothingGathered();
   for (int k = 0; k < 4; ++k) {
     ivec2 pixel = ivec2(footprint.first.x + (k & 1), footprint.first.y + (k >> 1));
     float share = footprint.share[k];
     if (share <= 0.0f) continue;
-    vec4 colour = backdropColour(pixel);
-    if (!tapShows(pixel, colour, layerZ)) continue;
+    bool straight = pixel.x == ownPixel.x && pixel.y == ownPixel.y;
+    vec4 colour = straight ? own : colourBehind(pixel, layerZ);
+    if (!isFiniteColour(colour) || (!straight && standsInFront(backdropDepth(pixel), layerZ))) continue;
     precise vec4 colourSum = sum.colour + share * colour;
     precise float weightSum = sum.weight + share;
     sum.colour = colourSum;

@@ -3,22 +3,23 @@
 // includes gather.glsl, or gives the same bits in another way.
 
 // What a path from this pixel's centre shows of the backdrop.
-PLD_FN vec4 lookupAlong(LookupChoice settings, Path path, ivec2 pixel) {
-  precise vec2 own = vec2(float(pixel.x) + 0.5f, float(pixel.y) + 0.5f);
-  vec2 place = own;
+//   own  what the pixel shows straight behind its layers
+PLD_FN vec4 lookupAlong(LookupChoice settings, Path path, ivec2 pixel, vec4 own) {
+  precise vec2 centre = vec2(float(pixel.x) + 0.5f, float(pixel.y) + 0.5f);
+  vec2 place = centre;
   Gathered tap = nothingGathered();
   if (path.refracts) {
-    precise vec2 bent = own + path.offset;
+    precise vec2 bent = centre + path.offset;
     place = bent;
-    tap = gatherBilinear(place, path.refractionZ);
+    tap = gatherBilinear(place, path.refractionZ, pixel, own);
   }
   vec4 undiffused = vec4(0.0f);
   if (tap.weight > 0.0f) {
     precise vec4 mean = tap.colour / tap.weight;
     undiffused = mean;
   } else {
-    place = own;
-    undiffused = backdropColour(pixel);
+    place = centre;
+    undiffused = own;
   }
   if (path.variance <= 0.0f) return undiffused;
   Gathered spread = gatherSpread(settings, place, path.variance, path.diffuseZ);
@@ -32,8 +33,8 @@ PLD_FN vec4 lookupAlong(LookupChoice settings, Path path, ivec2 pixel) {
 
 // Each channel along its own path.
 //   dispersion  offset of red minus the path's, of blue minus it
-PLD_FN vec4 lookupAt(LookupChoice settings, Path path, vec4 dispersion, ivec2 pixel) {
-  vec4 seen = lookupAlong(settings, path, pixel);
+PLD_FN vec4 lookupAt(LookupChoice settings, Path path, vec4 dispersion, ivec2 pixel, vec4 own) {
+  vec4 seen = lookupAlong(settings, path, pixel, own);
   if (!path.refracts || (dispersion.x == 0.0f && dispersion.y == 0.0f && dispersion.z == 0.0f && dispersion.w == 0.0f))
     return seen;
   Path red = path, blue = path;
@@ -41,7 +42,7 @@ PLD_FN vec4 lookupAt(LookupChoice settings, Path path, vec4 dispersion, ivec2 pi
   precise vec2 blueOffset = path.offset + vec2(dispersion.z, dispersion.w);
   red.offset = redOffset;
   blue.offset = blueOffset;
-  seen.r = lookupAlong(settings, red, pixel).r;
-  seen.b = lookupAlong(settings, blue, pixel).b;
+  seen.r = lookupAlong(settings, red, pixel, own).r;
+  seen.b = lookupAlong(settings, blue, pixel, own).b;
   return seen;
 }

@@ -66,8 +66,11 @@ class Statements {
                    double last) const;
   reference::Vec4 exactlyBehind(const Spot& spot, const reference::Shown& shown, const reference::Vec4& behind,
                                 double z) const;
-  // Between the four pixels around a position, but for those that stand in front of the layer.
-  Range lookedUp(const Spot& spot, const reference::Vec2& position, double layerZ, bool exactly) const;
+  // Between the four pixels around a position, but for those that stand in front of the layer. What is straight behind
+  // the layers never does.
+  Range lookedUp(const Spot& spot, const reference::Vec2& position, const reference::Vec4& behind, double layerZ,
+                 bool exactly) const;
+  void takeFarther(int x, int y, double limit, Range& range) const;
   std::vector<Texel> texelsAt(int x, int y, const reference::Vec2& place, bool exactly) const;
   std::vector<Texel> backdropOf(int x, int y, const reference::Column& column, bool exactly) const;
   // Of the pixel and the place of a sample.

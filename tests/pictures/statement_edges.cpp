@@ -95,6 +95,7 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
     take(sample.x, sample.y);
   });
   for (const glm::dvec2& place : places_) take(x + place.x, y + place.y);
+  if (bent) return std::nullopt;  // rays that are bent within the edge meet its pixels in part
   const double part = shares[0] / (shares[0] + shares[1]);
   if (part < 0.5) return std::nullopt;  // a corner, or a thing narrower than the pixel
   // A half is off by 2^-12 of itself, and by so much colours do not tell the shares.
@@ -108,7 +109,7 @@ std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& ar
       part * (ranges[0].high - ranges[0].low) + (1.0 - part) * (ranges[1].high - ranges[1].low) + astray * brightest;
   // Before nothing alpha is the share, where colours are seen alone.
   const bool tells = (own.solid < 0 || other.solid < 0) && impurity < kWholeAlpha;
-  if (tells && !bent) statement.allowed.a -= (astray - kNoShare) * brightest.a;
+  if (tells) statement.allowed.a -= (astray - kNoShare) * brightest.a;
   return statement;
 }
 
@@ -147,8 +148,8 @@ Statement Statements::mixedAt(int x, int y) const {
         light.take(Vec4(shown.light + shown.lightOff, 0.0));
         passed.take(Vec4(shown.transmission, 0.0));
         if (shown.bends.empty()) return;
-        // Either surface's colour may be what the others show.
-        seen.take(anySolids_ ? anywhere_ : seenBehind(spot, shown, behind, first, last));
+        // Either surface's colour may be what the others show; among stripes it may have been continued from elsewhere.
+        seen.take(anySolids_ || striped_ ? anywhere_ : seenBehind(spot, shown, behind, first, last));
         for (const Face& one : faces) seen.take(colourOf(one));
       });
     }

@@ -18,6 +18,7 @@ constexpr double kInFront = 0.9999;   // of a layer's depth: what is nearer is n
 constexpr double kInFrontOff = 1e-6;  // by which floats miss that
 constexpr double kTilt = 4e-6;        // of normals that are floats, radians
 constexpr double kOfReach = 5e-7;     // by which floats miss a place in the picture
+constexpr int kSeen = 3;              // pixels within which a surface of an edge is seen by itself
 constexpr double kMostPixels = 4.0;   // between which a place is looked for
 
 }  // namespace
@@ -40,7 +41,9 @@ std::vector<Statements::Texel> Statements::backdropOf(int x, int y, const Column
     if (!exactly && off != reference::kNothing && !touches && at > z * (1.0 + off) + 4.0 * rounding_) break;
     const auto& shows = crossing.layer.reflected;
     const auto& glows = crossing.layer.additive;
-    texels.push_back({Vec4(shows[0] + glows[0], shows[1] + glows[1], shows[2] + glows[2], 1.0), at});
+    // The backdrop is as near as the nearer of the mesh and the picture's depth, which is that of pixel centres.
+    texels.push_back(
+        {Vec4(shows[0] + glows[0], shows[1] + glows[1], shows[2] + glows[2], 1.0), std::min(at, centres_.at(x, y).z)});
     const bool clearlyBefore = off != reference::kNothing && at < z * (1.0 - off) - 4.0 * rounding_ * crossing.steep;
     if (exactly || touches || clearlyBefore) return texels;
   }
@@ -68,7 +71,22 @@ std::vector<Statements::Texel> Statements::texelsAt(int x, int y, const Vec2& pl
   return kept;
 }
 
-Statements::Range Statements::lookedUp(const Spot& spot, const Vec2& position, double layerZ, bool exactly) const {
+// What a pixel of an edge may show where something in it stands in front of the layer: the farther surface by itself,
+// of which pixels close by tell the colour.
+void Statements::takeFarther(int x, int y, double limit, Range& range) const {
+  if (!flags_.edges || flags_.passes < 2) return;
+  bool nearer = false;
+  for (int v = y - 1; v <= y + 1; ++v)
+    for (int u = x - 1; u <= x + 1; ++u) nearer = nearer || (inside(u, v) && centres_.at(u, v).z < limit);
+  if (!nearer) return;
+  for (int v = y - kSeen; v <= y + kSeen; ++v)
+    for (int u = x - kSeen; u <= x + kSeen; ++u)
+      if (inside(u, v) && centres_.at(u, v).z >= limit) range.take(Vec4(beauty_.at(u, v)));
+}
+
+Statements::Range Statements::lookedUp(const Spot& spot, const Vec2& position, const Vec4& behind, double layerZ,
+                                       bool exactly) const {
+  const Vec4 held(beauty_.at(spot.x, spot.y));
   const Vec2 corner = position - 0.5, first = glm::floor(corner), part = corner - first;
   Vec4 low(0.0), high(0.0);
   double shares = 0.0;
@@ -80,13 +98,16 @@ Statements::Range Statements::lookedUp(const Spot& spot, const Vec2& position, d
     const int x = static_cast<int>(first.x) + (k & 1), y = static_cast<int>(first.y) + (k >> 1);
     Range one;
     bool shows = false, hidden = false;
+    const bool own = x == spot.x && y == spot.y;
     for (const Texel& texel : texelsAt(x, y, spot.place, exactly)) {
       const double limit = kInFront * layerZ, off = exactly ? 0.0 : kInFrontOff + 2.0 * flags_.depthStep();
-      const bool mayShow = texel.z >= limit * (1.0 - off), mayHide = texel.z < limit * (1.0 + off);
+      const bool mayShow = own || texel.z >= limit * (1.0 - off), mayHide = !own && texel.z < limit * (1.0 + off);
       hidden = hidden || (exactly ? !mayShow : mayHide);
       shows = shows || mayShow;
-      if (mayShow) one.take(texel.colour);
+      if (mayShow) one.take(own && texel.colour == held ? behind : texel.colour);
     }
+    if (!exactly && shows && !own)
+      takeFarther(x, y, kInFront * layerZ * (1.0 + kInFrontOff + 2.0 * flags_.depthStep()), one);
     if (!shows) continue;
     any.take(one);
     mayDiffer = mayDiffer || hidden;
@@ -100,7 +121,8 @@ Statements::Range Statements::lookedUp(const Spot& spot, const Vec2& position, d
     return any;
   }
   // The straight ray's pixel where nothing else shows.
-  for (const Texel& texel : texelsAt(spot.x, spot.y, spot.place, exactly)) any.take(texel.colour);
+  for (const Texel& texel : texelsAt(spot.x, spot.y, spot.place, exactly))
+    any.take(texel.colour == held ? behind : texel.colour);
   return any;
 }
 
@@ -148,7 +170,7 @@ Statements::Range Statements::seenBehind(const Spot& spot, const Shown& shown, c
       channel = Range();
       for (const double x : along[0])
         for (const double y : along[1])
-          for (const double z : depths) channel.take(lookedUp(spot, {x, y}, z, false));
+          for (const double z : depths) channel.take(lookedUp(spot, {x, y}, behind, z, false));
     }
     seen.low[c] = channel.low[c];
     seen.high[c] = channel.high[c];
@@ -167,7 +189,7 @@ Vec4 Statements::exactlyBehind(const Spot& spot, const Shown& shown, const Vec4&
   for (glm::length_t c = 0; c < 3; ++c) {
     const auto k = static_cast<std::size_t>(c);
     const Vec2 at = Vec2(spot.x + 0.5, spot.y + 0.5) + landing.offset[k];
-    if (c == 0 || landing.offset[k] != landing.offset[k - 1]) value = lookedUp(spot, at, landing.z, true).low;
+    if (c == 0 || landing.offset[k] != landing.offset[k - 1]) value = lookedUp(spot, at, behind, landing.z, true).low;
     seen[c] = value[c];
     if (c == 1) seen.a = value.a;
   }

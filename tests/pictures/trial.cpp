@@ -142,9 +142,27 @@ Outcome runTrial(const Trial& trial, const std::string& folder, const std::share
   return compositeAndJudge(scene, flags, folder, kept);
 }
 
-Outcome compositeAndJudge(const DrawnScene& scene, const DrawnFlags& flags, const std::string& folder,
+namespace {
+
+// Halves end at 65504, and what is farther is nothing at all.
+bool holdsDepths(const reference::Picture& picture, const OpaqueForm& form) {
+  const reference::Eye& eye = picture.scene().eye;
+  for (int y = 0; y < eye.height; ++y)
+    for (int x = 0; x < eye.width; ++x) {
+      const reference::Ray ray = reference::rayThrough(eye, x + 0.5, y + 0.5);
+      const double z = reference::nearestSolid(picture.scene(), ray).z;
+      if (z != reference::kNothing && z * glm::length(ray.along) / form.metresPerUnit > 6e4) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+Outcome compositeAndJudge(const DrawnScene& scene, const DrawnFlags& drawn, const std::string& folder,
                           const std::shared_ptr<KeptWork>& kept) {
   const reference::Picture picture(scene.numbers);
+  DrawnFlags flags = drawn;
+  flags.form.half = flags.form.half && holdsDepths(picture, flags.form);
   const reference::Samples samples(picture, flags.filter, kPlacesAcross);
   writeOpaque(folder + "/opaque.exr", picture, samples, flags.form);
   writeScene(folder + "/glass.glb", scene);

@@ -74,6 +74,19 @@ TEST(Lookup, PostInFrontNeverShowsInsideTheGlassBehindIt) {
       }
 }
 
+// Glass on a leaning floor is met where a pass samples the pixel, farther than the pixel's centre; of what lies beside
+// it a part shows that is as small as the offset.
+TEST(Lookup, WhatIsStraightBehindGlassIsNeverInFrontOfIt) {
+  ScatterScene scene(16, 16, glm::vec4(1, 1, 1, 1), 5.2f);
+  for (int y = 0; y < 16; ++y) {
+    scene.backdrop.colour.at(8, y) = glm::vec4(0.2f, 0.2f, 0.2f, 1);
+    scene.backdrop.z.at(8, y) = 4.99f;
+  }
+  for (int y = 1; y < 15; ++y) scene.refract(8, y, glm::vec2(0.0625f, 0.0f));
+  const Image<glm::vec4> seen = scene.look(false);
+  for (int y = 1; y < 15; ++y) EXPECT_FLOAT_EQ(seen.at(8, y).r, 0.2f + 0.0625f * 0.8f);
+}
+
 TEST(Lookup, NoOffsetAndNoSpreadGiveThePixelsOwnBits) {
   test::Random random(12);
   ScatterScene scene(16, 16);

@@ -45,7 +45,7 @@ class DeviceSamplesPainter : public Painter {
       hideSolids(scattering);
       planes.solid = scattering.solid;
       mean_.add(planes, veil, context_.picture.passWeight);
-      showThrough(Lookups(backdrop, scattering, context_.plan.lookup), veil);
+      showThrough(Lookups(backdrop, scattering, context_.plan.lookup, glm::ivec2(0), context_.picture.edges), veil);
     }
     statistics.bitsPerPixel = stochasticBits(settings_);
     context_.counts.add(statistics);

@@ -147,7 +147,8 @@ class ListsPainter : public Painter {
   void showBackground(Veil& veil) {
     const GBuffer& picture = *context_.picture.centres;
     const glm::ivec2 place(planes_.data.x0 - picture.data.x0, planes_.data.y0 - picture.data.y0);
-    const Lookups lookups(backdrops_.of(picture, planes_.solid, place), planes_, context_.plan.lookup, place);
+    const Lookups lookups(backdrops_.of(picture, planes_.solid, place), planes_, context_.plan.lookup, place,
+                          context_.picture.edges);
     if (context_.plan.heldOut)
       showThroughHeldOut(lookups, lookedUp_, veil);
     else

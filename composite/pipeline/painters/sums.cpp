@@ -23,7 +23,7 @@ class SumsPainter : public Painter {
     return journal.time("resolve", [&] {
       ResolvePass* device = context_.plan.resolvesOnDevice ? &context_.device.resolver(journal) : nullptr;
       return resolveSums(device, std::move(planes), context_.plan.resolve, context_.plan.lookup,
-                         *context_.picture.centres);
+                         *context_.picture.centres, context_.picture.edges);
     });
   }
 

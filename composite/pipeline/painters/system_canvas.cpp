@@ -21,7 +21,7 @@ void putSolid(const glm::vec4& solid, bool lookedUp, Veil& veil, std::size_t at)
 }  // namespace
 
 SystemCanvas::SystemCanvas(const LitPicture& picture)
-    : gbuffer_(*picture.gbuffer), centres_(*picture.centres), deep_(picture.deepOpaque) {
+    : gbuffer_(*picture.gbuffer), centres_(*picture.centres), edges_(picture.edges), deep_(picture.deepOpaque) {
   if (deep_) places_ = rowOfPlaces(*deep_);
 }
 
@@ -73,7 +73,7 @@ Veil SystemCanvas::finish(const OitPlanes& planes, const LookupSettings& lookup,
   if (deep_) return veilOfPlaces(places_, veil, scatters ? &planes : nullptr, lookup, *deep_, centres_);
   if (scatters) {
     const Backdrop backdrop = backdropOf(centres_, planes.solid);
-    showThrough(Lookups(backdrop, planes, lookup), veil);
+    showThrough(Lookups(backdrop, planes, lookup, glm::ivec2(0), edges_), veil);
   }
   return veil;
 }

@@ -30,6 +30,7 @@ class SystemCanvas {
 
  private:
   const GBuffer &gbuffer_, &centres_;
+  const EdgeTexels* edges_;
   const DeepOpaque* deep_;
   HeldOutRow places_;  // of a deep picture: all of its places
 };
