@@ -47,6 +47,9 @@ std::string load(pld_get_proc_address get, void* user, GlFunctions& gl) {
     const std::string name = reinterpret_cast<const char*>(renderer);
     gl.onProcessor = name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
   }
+  GLint buffers = 0;
+  gl.GetIntegerv(GL_MAX_DRAW_BUFFERS, &buffers);
+  gl.fewBuffers = buffers <= kDrawBuffers;
   gl.clipControl = gl.version >= 45 || has(gl, "GL_ARB_clip_control");
 
   // A loader may hand out addresses of functions that the context does not have.

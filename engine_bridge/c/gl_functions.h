@@ -26,6 +26,7 @@ namespace pellucid::c {
   X(BufferSubData, PFNGLBUFFERSUBDATAPROC)                                             \
   X(CheckFramebufferStatus, PFNGLCHECKFRAMEBUFFERSTATUSPROC)                           \
   X(ClearBufferfv, PFNGLCLEARBUFFERFVPROC)                                             \
+  X(ColorMask, PFNGLCOLORMASKPROC)                                                     \
   X(ColorMaski, PFNGLCOLORMASKIPROC)                                                   \
   X(CompileShader, PFNGLCOMPILESHADERPROC)                                             \
   X(CreateProgram, PFNGLCREATEPROGRAMPROC)                                             \
@@ -118,6 +119,8 @@ namespace pellucid::c {
   X(TextureBarrier, PFNGLTEXTUREBARRIERPROC)                 \
   X(ViewportIndexedf, PFNGLVIEWPORTINDEXEDFPROC)
 
+constexpr int kDrawBuffers = 8;  // what OpenGL 3.3 promises; others are not touched
+
 struct GlFunctions {
 #define PLD_GL_MEMBER(name, type) type name = nullptr;
   PLD_GL_REQUIRED(PLD_GL_MEMBER)
@@ -127,6 +130,7 @@ struct GlFunctions {
   bool onProcessor = false;  // rasterised by Mesa, without a device
   bool core = false;
   bool clipControl = false;
+  bool fewBuffers = false;  // the device has no more draw buffers than this library touches
 };
 
 // Empty when `gl` holds everything, else what is missing: "OpenGL 3.3, found 2.1". The host's context is current.

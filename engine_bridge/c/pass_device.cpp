@@ -168,8 +168,7 @@ bool Device::isComplete() const {
 }
 
 void Device::allowColours(GLuint first, bool written) const {
-  const GLboolean allowed = written ? GL_TRUE : GL_FALSE;
-  for (GLuint i = first; i < kDrawBuffers; ++i) gl.ColorMaski(i, allowed, allowed, allowed, allowed);
+  setColourMask(gl, first, written);
 }
 
 Room::Room(Device& device, Storage storage) : device_(device) {

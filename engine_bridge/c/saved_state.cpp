@@ -243,21 +243,31 @@ void setViewportTo(const GlFunctions& gl, int x, int y, int width, int height) {
   setViewport(gl, v);
 }
 
+void setColourMask(const GlFunctions& gl, GLuint first, bool written) {
+  const GLboolean allowed = written ? GL_TRUE : GL_FALSE;
+  if (first == 0 && gl.fewBuffers) {
+    gl.ColorMask(allowed, allowed, allowed, allowed);
+    return;
+  }
+  for (GLuint i = first; i < kDrawBuffers; ++i) gl.ColorMaski(i, allowed, allowed, allowed, allowed);
+}
+
 void setAccumulation(const GlFunctions& gl, int width, int height) {
   setViewportTo(gl, 0, 0, width, height);
   setScissor(gl, false);
   for (int i = 0; i < kAccumulationSwitches; ++i) gl.Disable(kSwitches[i]);
   if (!gl.core) gl.Disable(kAlphaTest);
   gl.DepthMask(GL_FALSE);
-  for (GLuint i = 0; i < kDrawBuffers; ++i) {
-    gl.Disablei(GL_BLEND, i);
-    gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  }
+  setColourMask(gl, 0, true);
+  if (gl.fewBuffers)
+    gl.Disable(GL_BLEND);
+  else
+    for (GLuint i = 0; i < kDrawBuffers; ++i) gl.Disablei(GL_BLEND, i);
 }
 
 void setPlainDrawing(const GlFunctions& gl, int width, int height) {
   setAccumulation(gl, width, height);
-  for (const GLenum what : kSwitches) gl.Disable(what);
+  for (std::size_t i = kAccumulationSwitches; i < std::size(kSwitches); ++i) gl.Disable(kSwitches[i]);
   if (!gl.core) gl.Disable(kPolygonStipple);
   gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }

@@ -6,7 +6,6 @@
 
 namespace pellucid::c {
 
-constexpr int kDrawBuffers = 8;  // what OpenGL 3.3 promises; others are not touched
 constexpr int kMostUnits = 32;   // of which a host may choose for the seam
 
 // A run of texture units: GL_TEXTURE_2D and sampler bindings of first .. first + count - 1.
@@ -70,6 +69,8 @@ class SavedState {
 };
 
 void setViewportTo(const GlFunctions& gl, int x, int y, int width, int height);
+// Of the draw buffers from `first` on.
+void setColourMask(const GlFunctions& gl, GLuint first, bool written);
 // All that could keep a draw of the library's own from its pixels. The viewport is (0, 0, width, height).
 void setPlainDrawing(const GlFunctions& gl, int width, int height);
 // The part of it that would falsify sums; culling, polygon mode and clipping stay the host's.

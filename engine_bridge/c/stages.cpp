@@ -144,16 +144,18 @@ bool Stages::attachDepth(const pld_frame& frame) const {
   return false;
 }
 
-// Draws of the library's own that the host's come after.
-void Stages::prepare(const pld_frame& frame, bool isFirst) {
+// Draws of the library's own that the host's come after. False where there is none; else what accumulation asks for is
+// set, but for the viewport.
+bool Stages::prepare(const pld_frame& frame, bool isFirst) {
   const bool planar = isFirst && device_.permutation.planarDepth(), low = stage_ == PLD_STAGE_LOW,
              empties = stage_ == PLD_STAGE_LAYERS && emptyPlanes_.name;
   if (planar) drawPlanarDepth(frame);
   if (low) low_.drawFarthestDepth(frame);
   if (empties) drawEmptyPlanes(frame);
-  if (!planar && !low && !empties) return;
+  if (!planar && !low && !empties) return false;
   device_.restoreForDraws();
   device_.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frameOf(stage_));
+  return true;
 }
 
 pld_status Stages::open(pld_stage stage, const pld_frame& frame, int width, GLenum attachment, bool isFirst) {
@@ -176,8 +178,11 @@ pld_status Stages::open(pld_stage stage, const pld_frame& frame, int width, GLen
   device_.timers.mark(gl, Timers::markOf(stage, 0));
   const int pixelsATexel = stage == PLD_STAGE_LOW ? frame.low_factor : 1;
   setFrame(frame, width, pixelsATexel);
-  prepare(frame, isFirst);
-  setAccumulation(gl, frame.width / pixelsATexel, frame.height / pixelsATexel);
+  const int wide = frame.width / pixelsATexel, high = frame.height / pixelsATexel;
+  if (prepare(frame, isFirst))
+    setViewportTo(gl, 0, 0, wide, high);
+  else
+    setAccumulation(gl, wide, high);
   if (!device_.permutation.exact()) clear();
   setBlends();
   setTests();

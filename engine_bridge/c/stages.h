@@ -31,7 +31,7 @@ class Stages {
   const std::vector<Plane>& planesOf(pld_stage stage) const;
   Units unitsOf(pld_stage stage) const;
   bool attachDepth(const pld_frame& frame) const;
-  void prepare(const pld_frame& frame, bool isFirst);
+  bool prepare(const pld_frame& frame, bool isFirst);
   void setFrame(const pld_frame& frame, int width, int pixelsATexel) const;
   void drawPlanarDepth(const pld_frame& frame) const;
   void drawEmptyPlanes(const pld_frame& frame) const;

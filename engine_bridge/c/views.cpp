@@ -65,7 +65,7 @@ void Views::drawSpread(const pld_target& target, const pld_frame& frame) {
   spread_.bind();
   device_.allowColours(1, true);
   spread_.draw(frame.width, frame.height);
-  setPlainDrawing(device_.gl, frame.width, frame.height);
+  setViewportTo(device_.gl, 0, 0, frame.width, frame.height);
   device_.allowColours(1, false);
   target_.bindAgain(target);
 }
