@@ -49,7 +49,9 @@ void EdgePasses::depthAt(int pass, Image<float>& viewZ) const {
   for (const Edge& edge : edges_) {
     const double nearer = edge.pixel.nearer.z(offset.x, offset.y), farther = edge.pixel.farther.z(offset.x, offset.y);
     // What is nearer where it ends may lean so much that its plane goes on behind the farther.
-    const double z = edge.pixel.meet || edge.seesNearer[number] ? std::min(nearer, farther) : farther;
+    const double z = edge.pixel.ridge                             ? std::max(nearer, farther)
+                     : edge.pixel.meet || edge.seesNearer[number] ? std::min(nearer, farther)
+                                                                  : farther;
     viewZ.at(edge.pixel.x, edge.pixel.y) = static_cast<float>(z);
   }
 }

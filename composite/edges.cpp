@@ -47,9 +47,10 @@ class Finder {
   };
   struct Mixture {
     glm::dvec4 nearer, farther;
-    double share;            // of the nearer, [0,1]
-    double off;              // how far the pixel's colour lies from it, as a part of the line's length
-    bool byObjects = false;  // the share is that of objects the file tells apart
+    glm::dvec4 fartherNearest;  // as the picture holds it
+    double share;               // of the nearer, [0,1]
+    double off;                 // how far the pixel's colour lies from it, as a part of the line's length
+    bool byObjects = false;     // the share is that of objects the file tells apart
   };
   struct Beside {
     Side other = Side::own;  // own: none of the neighbours lies there
@@ -198,15 +199,20 @@ std::optional<PlaneNear> Finder::planeOf(int x, int y, Side side) const {
   return std::nullopt;
 }
 
-// Each in front of the other where it is seen itself, they meet between. Otherwise one ends before the other, of which
-// a plane that has left the picture here tells no more than its depth.
+// Each in front of the other where it is seen itself, they meet in a corner between. A plane that lies farther where it
+// is seen itself, and before the other here, goes round a ridge. Otherwise one ends before the other, of which a plane
+// that has left the picture here tells no more than its depth.
 void Finder::setPlanes(const PlaneNear& own, const PlaneNear& beside, Side other, EdgePixel& edge) {
   edge.nearer = other == Side::nearer ? beside : own;
   edge.farther = other == Side::nearer ? own : beside;
   const glm::dvec2 there = beside.from;
   edge.meet = own.z(0.0, 0.0) < beside.z(0.0, 0.0) && beside.z(there.x, there.y) < own.z(there.x, there.y);
   const double besideZ = beside.z(0.0, 0.0);
-  if (edge.meet || (std::isfinite(besideZ) && besideZ > kAtEye)) return;
+  if (edge.meet) return;
+  if (std::isfinite(besideZ) && besideZ > kAtEye) {
+    edge.ridge = other == Side::farther && besideZ < own.z(0.0, 0.0);
+    return;
+  }
   (other == Side::nearer ? edge.nearer : edge.farther).plane = {beside.plane.centre, 0.0, 0.0,
                                                                 beside.plane.orthographic};
 }
@@ -219,7 +225,6 @@ void takeApart(const glm::dvec4& colour, const glm::dvec4& nearer, const glm::dv
   for (int c = 0; c < 3; ++c)
     edge.nearerPart[c] = static_cast<float>(colour[c] > 0.0 ? std::clamp(part[c] / colour[c], 0.0, 1.0) : f);
   edge.whole = glm::vec3(colour);
-  edge.fartherAlone = glm::vec3(farther);
   edge.alpha = static_cast<float>(colour.a);
   const double least = std::max(0.0, (colour.a - g) / f),
                most = std::min(1.0, colour.a / f);  // else the other's is none
@@ -239,7 +244,7 @@ std::optional<Finder::Mixture> Finder::mixtureOf(const glm::dvec4& colour, const
       const double share = std::clamp(glm::dot(colour - farther, across) / (length * length), 0.0, 1.0);
       const double off = glm::length(colour - farther - share * across) / length;
       if (off > kOffLine || (best && (best->off < kOnLine || !(off < kBetter * best->off)))) continue;
-      best = Mixture{nearer, farther, share, off};
+      best = Mixture{nearer, farther, colours.farther.nearest, share, off};
     }
   return best;
 }
@@ -268,7 +273,7 @@ std::optional<Finder::Mixture> Finder::mixtureAt(int x, int y, Side other) const
   if (mixture) return mixture;
   const std::optional<double> share = nearerShare(gbuffer_, sides_, x, y, other);
   if (!share) return std::nullopt;
-  return Mixture{colours->nearer.nearest, colours->farther.nearest, *share, 0.0, true};
+  return Mixture{colours->nearer.nearest, colours->farther.nearest, colours->farther.nearest, *share, 0.0, true};
 }
 
 // A straight edge leaves at least half of the pixel to the surface at its centre; with much less of it colours were
@@ -295,6 +300,7 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
   edge.y = y;
   edge.share = mixture->share;
   setPlanes(*own, *beside, other, edge);
+  edge.fartherAlone = glm::vec3(mixture->fartherNearest);
   edge.towardsNearer = directionOf(x, y, other);
   takeApart(colour, mixture->nearer, mixture->farther, edge);
   return edge;

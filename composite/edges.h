@@ -30,6 +30,8 @@ struct EdgePixel {
   PlaneNear nearer, farther;
   // Either surface goes behind the other where they meet, as a floor and its wall: whichever is nearer is seen there.
   bool meet = false;
+  // Either ends where they meet, as two sides of a box: whichever is farther is seen there.
+  bool ridge = false;
   glm::dvec2 towardsNearer{0.0};  // across the edge in the picture, unit, y down
 };
 

@@ -59,7 +59,8 @@ PLD_FN vec2 bodyOffset(RefractionSettings settings, ClosedBody body, vec3 pView,
   vec3 beyond = inside;
   if (!reflectsAll(-inside, inwards, 1.0f / eta)) beyond = refractedDirection(-inside, inwards, 1.0f / eta);
   float behind = backgroundZ + leaves.z;
-  if (!(behind < PLD_REFRACTION_REACH)) behind = PLD_REFRACTION_REACH;
+  float reach = refractionReach(settings, -pView.z);
+  if (!(behind < reach)) behind = reach;
   vec3 reached = leaves + beyond * (max(behind, 0.0f) / max(-beyond.z, PLD_LEAST_FORWARD));
   vec2 offset = fromPrincipalPoint(settings, reached) - fromPrincipalPoint(settings, pView);
   return clamp(offset, vec2(-PLD_LARGEST_OFFSET), vec2(PLD_LARGEST_OFFSET));

@@ -7,7 +7,11 @@ const int PLD_REFRACT_FIXED = 1;      // the background lies a stated distance b
 const int PLD_REFRACT_DEPTH = 2;      // it lies at the opaque depth
 const int PLD_REFRACT_THICKNESS = 3;  // a parallel slab before the opaque depth: the ray is displaced, not turned
 
-const float PLD_REFRACTION_REACH = 1e4f;   // metres behind the surface at most, which stands for the sky too
+// How far behind the surface the background lies at most, which stands for the sky too: in depths of the surface, or
+// where rays are parallel in pixels. No unit of length says what is far.
+const float PLD_REFRACTION_REACH = 1e4f;
+const float PLD_PARALLEL_REACH = 1e6f;
+const float PLD_LARGEST_REACH = 1e30f;     // metres: nothing overflows
 const float PLD_LEAST_FORWARD = 0.02f;     // a ray that goes more sideways is followed as if it went this much forward
 const float PLD_LARGEST_OFFSET = 65536.0f; // pixels: beyond any picture, and 100,000 layers still add up
 // A refracting layer that displaces nothing still takes part in the average, so it is no zero. Pixels
@@ -62,6 +66,13 @@ PLD_FN vec2 fromPrincipalPoint(RefractionSettings settings, vec3 pView) {
   return pixels;
 }
 
+// Metres.
+//   z  planar, of the surface
+PLD_FN float refractionReach(RefractionSettings settings, float z) {
+  precise float reach = settings.orthographic != 0 ? PLD_PARALLEL_REACH / settings.focalX : PLD_REFRACTION_REACH * z;
+  return min(reach, PLD_LARGEST_REACH);
+}
+
 // delta of one entering face, float pixels; (0, 0) when eta is 1, when all is reflected and in mode off.
 //   pView        where the ray enters, view space, metres, z < 0
 //   toEye        unit; from pView towards the eye
@@ -75,7 +86,8 @@ PLD_FN vec2 refractionOffset(RefractionSettings settings, vec3 pView, vec3 toEye
   vec3 inside = refractedDirection(toEye, normal, eta);
   precise float z = -pView.z;
   precise float behind = backgroundZ - z;
-  if (!(behind < PLD_REFRACTION_REACH)) behind = PLD_REFRACTION_REACH;
+  float reach = refractionReach(settings, z);
+  if (!(behind < reach)) behind = reach;
   behind = max(behind, 0.0f);
   precise vec3 reached = pView;
   if (settings.mode == PLD_REFRACT_THICKNESS) {

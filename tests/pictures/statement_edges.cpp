@@ -57,7 +57,8 @@ bool Statements::liesBehind(int x, int y, const Face& own, const Face& other) co
 }
 
 std::optional<Statement> Statements::edgeAt(int x, int y, const Surroundings& around) const {
-  if (!flags_.edges || around.faces.size() != 2 || x == 0 || y == 0 || !inside(x + 1, y + 1)) return std::nullopt;
+  // A surface of which the picture ends after two pixels may as well be two: their depths tell no slope.
+  if (!flags_.edges || around.faces.size() != 2 || x < 2 || y < 2 || !inside(x + 2, y + 2)) return std::nullopt;
   if (striped_ || (anySolids_ && picture_.anyBends())) return std::nullopt;  // bent rays show either, by the pass
   const Face own = centre(x, y), other = around.faces[0] == own ? around.faces[1] : around.faces[0];
   if (!(around.faces[0] == own || around.faces[1] == own)) return std::nullopt;

@@ -75,6 +75,8 @@ std::vector<Statements::Texel> Statements::texelsAt(int x, int y, const Vec2& pl
 // of which pixels close by tell the colour.
 void Statements::takeFarther(int x, int y, double limit, Range& range) const {
   if (!flags_.edges || flags_.passes < 2) return;
+  x = std::clamp(x, 0, centres_.width() - 1);
+  y = std::clamp(y, 0, centres_.height() - 1);
   bool nearer = false;
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) nearer = nearer || (inside(u, v) && centres_.at(u, v).z < limit);

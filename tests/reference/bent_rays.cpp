@@ -6,7 +6,8 @@
 namespace pellucid::reference {
 namespace {
 
-constexpr double kFarthest = 1e4;       // metres behind a surface: nothing lies farther, the sky neither
+// Behind a surface, in its depths, or in pixels of parallel rays: nothing lies farther, the sky neither.
+constexpr double kFarthest = 1e4, kFarthestParallel = 1e6;
 constexpr double kLeastForward = 0.02;  // of a ray that goes more sideways
 
 // Pixels from the picture's middle, y down.
@@ -21,9 +22,11 @@ Vec3 entering(const Vec3& toEye, const Vec3& normal, double index) {
   return across - std::sqrt(std::max(1.0 - glm::dot(across, across), 0.0)) * normal;
 }
 
-Vec3 reachedFrom(const Bending& bending, const Bend& bend, double index, double backgroundZ) {
+Vec3 reachedFrom(const Eye& eye, const Bending& bending, const Bend& bend, double index, double backgroundZ) {
   const Vec3 inside = entering(bend.toEye, bend.normal, index);
-  const double behind = std::clamp(backgroundZ + bend.at.z, 0.0, kFarthest);
+  const double farthest =
+      eye.parallel ? kFarthestParallel * 2.0 * eye.half.x / eye.displayWidth : kFarthest * -bend.at.z;
+  const double behind = std::clamp(backgroundZ + bend.at.z, 0.0, std::max(farthest, 0.0));
   if (bending.until == Bending::Until::slab) {
     const Vec3 leaves = bend.at + inside * (bend.thickness / std::max(-glm::dot(inside, bend.normal), kLeastForward));
     const double left = std::max(behind + leaves.z - bend.at.z, 0.0);
@@ -48,7 +51,7 @@ Landing landingOf(const Eye& eye, const Bending& bending, const std::vector<Bend
     bend.normal = glm::normalize(bend.normal + Vec3(tilt, 0.0));
     const Vec2 here = projected(eye, bend.at);
     for (glm::length_t c = 0; c < 3; ++c) {
-      const Vec2 there = projected(eye, reachedFrom(bending, bend, bend.index[c], backgroundZ));
+      const Vec2 there = projected(eye, reachedFrom(eye, bending, bend, bend.index[c], backgroundZ));
       landing.offset[static_cast<std::size_t>(c)] += bend.weight * (there - here);
       landing.reach = std::max(landing.reach, glm::length(there) + glm::length(here));
     }
