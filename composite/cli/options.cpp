@@ -111,7 +111,7 @@ void SceneFlags::into(Request& request) const {
 }
 
 void RunFlags::addTo(CLI::App& verb) {
-  verb.add_option("--threads", threads, "0 uses every core")->check(CLI::NonNegativeNumber);
+  verb.add_option("--threads", threads, "0 uses every core")->check(CLI::Range(0, kMostThreads));
   verb.add_flag("--stats", stats, "Print counts and the time of every stage");
   verb.add_flag("--json", json, "Print results as JSON");
 }

@@ -80,7 +80,7 @@ void StudyFlags::addTo(CLI::App& verb) {
                   "Timed runs of every row after one that is not counted; the median and its spread are printed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  verb.add_option("--threads", run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
+  verb.add_option("--threads", run.threads, "0 uses every core")->check(CLI::Range(0, kMostThreads));
   verb.add_flag("--json", run.json, "Print the table as JSON");
   shown.addDisplayTo(verb, "study.html");
 }
