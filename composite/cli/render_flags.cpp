@@ -50,6 +50,7 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
             ->check(CLI::IsMember({1, 2, 4, 8}))
             ->capture_default_str();
   passes = what.defaultPasses;
+  ofOneMethod_ = what.precision;
   if (what.passes)
     passesOption_ = verb.add_option("--aa", passes, "Jittered passes, averaged; 1 samples pixel centres")
                         ->check(CLI::Range(1, 4096))
@@ -85,6 +86,7 @@ void RenderFlags::paintInto(Request& request) const {
   if (edgesOption_ && edgesOption_->count() > 0) request.edges = edges == "resolve" ? EdgeRule::resolve : EdgeRule::off;
   shadow.into(request);
   stochastic.into(request);
+  if (ofOneMethod_) stochastic.expectRead({request.method}, "--method", request.shadows);
   const bool sums = paintsBy<PaintSums>(request);
   const auto* listed = std::get_if<PaintListed>(&request.paint);
   if (auto* cheapest = std::get_if<PaintCheapest>(&request.paint)) {

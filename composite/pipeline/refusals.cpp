@@ -4,6 +4,10 @@
 
 namespace pellucid {
 
+bool Refusal::ofMethod() const {
+  return std::string(with).find("{}") != std::string::npos;
+}
+
 bool weighs(const Request& request) {
   if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->weighs;
   if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
