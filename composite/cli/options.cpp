@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "composite/cli/budget.h"
+#include "composite/cli/number_checks.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 
@@ -52,12 +53,12 @@ void SceneFlags::addTo(CLI::App& verb) {
   addThinFlag(verb, thin);
   verb.add_option("--scene-unit", unit,
                   "Metres in one unit of the glTF and of the grids of fog; --fog is in metres; --unit is the picture's")
-      ->check(CLI::PositiveNumber)
+      ->check(aboveZero())
       ->capture_default_str();
   verb.add_option("--asset-root", assetRoot,
                   "Folder whose files a glTF and an OpenColorIO config may name besides those under their own folders");
   verb.add_option("--lumens-per-watt", lumensPerWatt, "glTF lights are photometric, renders are not")
-      ->check(CLI::PositiveNumber)
+      ->check(aboveZero())
       ->capture_default_str();
   verb.add_option("--texture-filter", textureFilter, "How textures are read where a texel is not a pixel")
       ->check(CLI::IsMember({"mipmap", "bilinear", "nearest"}))

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "composite/cli/number_checks.h"
 #include "composite/cli/system_flags.h"
 #include "gbuffer/errors.h"
 
@@ -30,7 +31,7 @@ void addWays(CLI::App& verb, RenderFlags& flags) {
           "--tolerance", flags.tolerance,
           "Error to live with, proved for every pixel and channel of the mean of all passes: E times the larger of "
           "1 and the exact value, apart from the file's own rounding")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notBelowZero());
   addSystemFlags(verb, flags.systems, flags.systemWeights);
   verb.add_flag("--measure", flags.measure, "Also composite the sorted truth and print the error against it");
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "composite/cli/number_checks.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -34,10 +35,11 @@ void StochasticFlags::addTo(CLI::App& verb) {
       verb.add_option("--samples-adaptive", adaptive,
                       "Of --method stochastic: more sets of --samples where they are needed, until the standard "
                       "error of a pixel's layers is E times the larger of 1 and their light")
-          ->check(CLI::Range(1e-6, 1.0));
+          ->check(CLI::Range(1e-6, 1.0))
+          ->check(isNumber());
   seedOption_ =
       verb.add_option("--seed", seed, "Of --method stochastic and --shadows stochastic: another seed, other noise")
-          ->check(CLI::NonNegativeNumber)
+          ->check(notBelowZero())
           ->capture_default_str();
   masksOption_ = verb.add_option("--masks", masks, "Of --method stochastic: naive flips a coin per sample")
                      ->check(CLI::IsMember({"stratified", "naive"}))
