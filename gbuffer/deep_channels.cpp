@@ -73,7 +73,7 @@ std::string viewInPart(const ExrDocument& document, const std::string& view, std
   return document.views[0];
 }
 
-// The part to read: the first deep one of the view.
+// The part to read: the first deep one of the view. Parts of no view go by their names, as the note says them.
 int deepPart(const ExrDocument& document, const std::string& view, std::string& note) {
   int found = -1, deep = 0;
   std::string all;
@@ -82,7 +82,8 @@ int deepPart(const ExrDocument& document, const std::string& view, std::string& 
     if (!part.deep) continue;
     ++deep;
     all += (all.empty() ? "" : ", ") + titleOf(part);
-    const bool holds = view.empty() || part.view == view || (sharesViews(document) && isIn(document.views, view));
+    const bool named = !part.view.empty() ? part.view == view : part.name == view;
+    const bool holds = view.empty() || named || (sharesViews(document) && isIn(document.views, view));
     if (found < 0 && holds) found = static_cast<int>(i);
   }
   if (deep == 0)
@@ -90,7 +91,7 @@ int deepPart(const ExrDocument& document, const std::string& view, std::string& 
                                    document.parts.empty() ? "" : namesOf(document.parts[0])));
   if (found < 0)
     throw MeaningError(
-        fmt::format("{}: --view: found the deep parts {}, expected one of view {}", document.path, all, view));
+        fmt::format("{}: --view: found the deep parts {}, expected one of view or name {}", document.path, all, view));
   if (deep > 1 && view.empty())
     note = fmt::format("{}: of {} deep parts {} is taken; --view names another", document.path, deep,
                        titleOf(document.parts[static_cast<std::size_t>(found)]));

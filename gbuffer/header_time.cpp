@@ -4,12 +4,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 namespace pellucid {
 namespace {
 
 constexpr double kUsualFramesPerSecond = 24.0;
-constexpr double kMostFramesPerSecond = 1e6;
+constexpr double kMostFramesPerSecond = 1e6, kMostSeconds = 1e9;
 constexpr std::uint32_t kDropFrame = 1u << 6;  // of TimeCode::timeAndFlags, as the bits of TV60 have it
 
 template <class T>
@@ -69,30 +70,57 @@ std::optional<int> framesOf(const ExrAttribute& attribute, double rate) {
   return count;
 }
 
-std::optional<OpenShutter> shutterOf(const ExrAttribute& attribute) {
+// Two numbers with a colon between them.
+std::optional<std::pair<double, double>> pairOf(const ExrAttribute& attribute) {
   if (attribute.type != "string") return std::nullopt;
   const char *at = attribute.bytes.data(), *end = at + attribute.bytes.size();
-  OpenShutter shutter;
-  const auto [colon, first] = std::from_chars(at, end, shutter.open);
+  std::pair<double, double> pair;
+  const auto [colon, first] = std::from_chars(at, end, pair.first);
   if (first != std::errc() || colon == end || *colon != ':') return std::nullopt;
-  const auto [next, second] = std::from_chars(colon + 1, end, shutter.close);
-  const bool numbers = second == std::errc() && next == end && std::abs(shutter.open) <= kLongestShutter &&
-                       std::abs(shutter.close) <= kLongestShutter;
-  return numbers && shutter.open <= shutter.close ? std::optional(shutter) : std::nullopt;
+  const auto [next, second] = std::from_chars(colon + 1, end, pair.second);
+  const bool numbers = second == std::errc() && next == end && std::isfinite(pair.first) && std::isfinite(pair.second);
+  return numbers ? std::optional(pair) : std::nullopt;
+}
+
+std::string pairText(double first, double second) {
+  char text[64];
+  char* end = std::to_chars(text, text + sizeof text, first).ptr;
+  *end++ = ':';
+  return {text, std::to_chars(end, text + sizeof text, second).ptr};
+}
+
+std::optional<OpenShutter> shutterOf(const ExrAttribute& attribute) {
+  const auto pair = pairOf(attribute);
+  if (!pair || pair->first > pair->second || std::abs(pair->first) > kLongestShutter ||
+      std::abs(pair->second) > kLongestShutter)
+    return std::nullopt;
+  return OpenShutter{pair->first, pair->second};
+}
+
+std::optional<StatedTime> statedTimeOf(const ExrAttribute& attribute) {
+  const auto pair = pairOf(attribute);
+  if (!pair || std::abs(pair->first) > kMostSeconds || pair->second <= 0.0 || pair->second >= kMostFramesPerSecond)
+    return std::nullopt;
+  return StatedTime{pair->first, pair->second};
 }
 
 }  // namespace
 
 std::string shutterText(const OpenShutter& shutter) {
-  char text[64];
-  char* end = std::to_chars(text, text + sizeof text, shutter.open).ptr;
-  *end++ = ':';
-  return {text, std::to_chars(end, text + sizeof text, shutter.close).ptr};
+  return pairText(shutter.open, shutter.close);
+}
+
+std::string timeText(const StatedTime& time) {
+  return pairText(time.seconds, time.framesPerSecond);
 }
 
 HeaderTime headerTimeOf(const ExrDocument& document) {
   HeaderTime time;
-  if (const ExrAttribute* rate = find(document, "framesPerSecond")) time.framesPerSecond = rateOf(*rate);
+  // OpenImageIO's writers begin the name with a capital.
+  for (const char* name : {"framesPerSecond", "FramesPerSecond"})
+    if (const ExrAttribute* rate = find(document, name); rate && !time.framesPerSecond)
+      time.framesPerSecond = rateOf(*rate);
+  if (const ExrAttribute* stated = find(document, kTimeAttribute)) time.stated = statedTimeOf(*stated);
   if (const ExrAttribute* shutter = find(document, kShutterAttribute)) time.shutter = shutterOf(*shutter);
   if (const ExrAttribute* exposure = find(document, "expTime")) {
     const auto seconds = valueOf<float>(*exposure, "float");

@@ -234,8 +234,11 @@ using ColourNames = std::vector<const char*>;
 // The beauty as shadows leave it, and where; and as it is lit in one pass.
 const ColourNames kRelit{"oit.relit.R", "oit.relit.G", "oit.relit.B", "oit.relit.changed"};
 const ColourNames kNow{"oit.now.R", "oit.now.G", "oit.now.B"};
+// What a multiplier for the whole beauty would be.
+const ColourNames kShadow{"oit.shadow.R", "oit.shadow.G", "oit.shadow.B"};
 
-void addColours(const Image<glm::vec4>& colours, const ColourNames& names, NewExr& file) {
+template <class Colour>
+void addColours(const Image<Colour>& colours, const ColourNames& names, NewExr& file) {
   if (colours.empty()) return;
   for (std::size_t c = 0; c < names.size(); ++c) {
     ExrChannel channel{names[c], PixelType::float32, std::vector<std::byte>(colours.size() * sizeof(float))};
@@ -245,10 +248,11 @@ void addColours(const Image<glm::vec4>& colours, const ColourNames& names, NewEx
   }
 }
 
-Image<glm::vec4> coloursOf(const ExrPart& part, const ColourNames& names, const std::string& path) {
-  Image<glm::vec4> colours;
+template <class Colour>
+Image<Colour> coloursOf(const ExrPart& part, const ColourNames& names, const std::string& path) {
+  Image<Colour> colours;
   if (!part.find(names[0])) return colours;
-  colours = Image<glm::vec4>(part.data.width(), part.data.height(), glm::vec4(0.0f));
+  colours = Image<Colour>(part.data.width(), part.data.height(), Colour(0.0f));
   for (std::size_t c = 0; c < names.size(); ++c) {
     const ExrChannel* channel = part.find(names[c]);
     if (!channel || channel->type != PixelType::float32)
@@ -268,6 +272,7 @@ NewExr fileOf(const PassPlanes& pass) {
   NewExr file = fileOf(pass.planes, pass.rims);
   addColours(pass.relit, kRelit, file);
   addColours(pass.now, kNow, file);
+  addColours(pass.shadow, kShadow, file);
   if (pass.pictureCamera) {
     file.attributes[kPictureCamera.numbers] = cameraText(*pass.pictureCamera);
     file.attributes[kPictureCamera.origin] = pass.pictureCamera->origin;
@@ -345,8 +350,9 @@ std::vector<PassPlanes> readPasses(const std::string& path) {
     }
     PassPlanes pass;
     pass.planes = planesOf(part, path, &pass.rims);
-    pass.relit = coloursOf(part, kRelit, path);
-    pass.now = coloursOf(part, kNow, path);
+    pass.relit = coloursOf<glm::vec4>(part, kRelit, path);
+    pass.now = coloursOf<glm::vec4>(part, kNow, path);
+    pass.shadow = coloursOf<glm::vec3>(part, kShadow, path);
     pass.pictureCamera = pictureCameraOf(part, path);
     pass.edges = part.text(kEdges).value_or("off") == "resolve";
     pass.pixelFilter = filterOf(part, path);

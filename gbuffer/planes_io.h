@@ -27,6 +27,8 @@ struct PassPlanes {
   RimPlanes rims;
   // Of the first pass alone: the beauty as the layers' shadows leave it, and 1 where they changed it. Empty: nowhere.
   Image<glm::vec4> relit;
+  // Of the first pass alone: the layer `shadow` of the picture, which nothing there has taken in. Empty: none.
+  Image<glm::vec3> shadow;
   // Where shadows move with the passes: the beauty as it is lit in this one, without its alpha. Empty: as above.
   Image<glm::vec4> now;
   // Of the first pass alone: the camera that took the picture, where passes have their own times or points of the lens.

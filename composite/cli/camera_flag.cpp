@@ -12,8 +12,13 @@
 namespace pellucid::cli {
 namespace {
 
+constexpr double kFarthest = 1e15;  // as in a glTF
+
 glm::dvec3 parsePoint(const std::string& text) {
   const auto numbers = parseNumbers(text, ',', 3, "--camera", "three numbers X,Y,Z");
+  for (const double number : numbers)
+    if (!(std::abs(number) <= kFarthest))
+      throw UsageError(fmt::format("--camera: found {:g}, expected magnitudes up to {:g}", number, kFarthest));
   return {numbers[0], numbers[1], numbers[2]};
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "composite/cli/compare_table.h"
+#include "composite/cli/number_checks.h"
 #include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verb_flags.h"
@@ -75,29 +76,30 @@ void CompareFlags::addTo(CLI::App& verb) {
   verb.add_option("a", a, "EXR")->required();
   verb.add_option("b", b, "EXR to hold against it")->required();
   CompareSettings& settings = thresholds;
-  const auto percent = CLI::Range(0.0, 100.0);
   verb.add_option("--fail", settings.fail.absolute, "Largest difference of a value")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notBelowZero())
       ->capture_default_str();
   verb.add_option("--failrelative", settings.fail.relative, "The same, times the larger of the two values")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notBelowZero())
       ->capture_default_str();
   verb.add_option("--failpercent", settings.fail.percent, "Pixels of a layer that may exceed it")
-      ->check(percent)
+      ->check(CLI::Range(0.0, 100.0))
+      ->check(isNumber())
       ->capture_default_str();
-  verb.add_option("--hardfail", settings.fail.hard, "Difference that fails by itself")->check(CLI::NonNegativeNumber);
+  verb.add_option("--hardfail", settings.fail.hard, "Difference that fails by itself")->check(notBelowZero());
   verb.add_option("--allowfailures", settings.allowedFailures, "Pixels of a layer that may exceed --fail")
       ->capture_default_str();
   verb.add_option("--warn", settings.warn.absolute, "As --fail, but only a warning")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notBelowZero())
       ->capture_default_str();
   verb.add_option("--warnrelative", settings.warn.relative, "As --failrelative, but only a warning")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notBelowZero())
       ->capture_default_str();
   verb.add_option("--warnpercent", settings.warn.percent, "As --failpercent, but only a warning")
-      ->check(percent)
+      ->check(CLI::Range(0.0, 100.0))
+      ->check(isNumber())
       ->capture_default_str();
-  verb.add_option("--hardwarn", settings.warn.hard, "As --hardfail, but only a warning")->check(CLI::NonNegativeNumber);
+  verb.add_option("--hardwarn", settings.warn.hard, "As --hardfail, but only a warning")->check(notBelowZero());
   verb.add_option("--metadata", metadata, "What a differing attribute does")
       ->check(CLI::IsMember({"fail", "warn", "ignore"}))
       ->capture_default_str();

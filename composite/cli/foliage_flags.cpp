@@ -1,5 +1,7 @@
 #include "composite/cli/foliage_flags.h"
 
+#include "composite/cli/number_checks.h"
+
 namespace pellucid::cli {
 
 void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
@@ -16,6 +18,7 @@ void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
                    ->capture_default_str();
   details[1] = verb.add_option("--occlusion-direct", direct, "How much of the occlusion darkens direct light too")
                    ->check(CLI::Range(0.0, 1.0))
+                   ->check(isNumber())
                    ->capture_default_str();
   details[3] = verb.add_option("--occlusion-source", source,
                                "Occlusion of the picture itself: its AO channel where it has one, or from its depth")
@@ -24,7 +27,7 @@ void FoliageFlags::addTo(CLI::App& verb, bool keepsApart) {
   details[2] = verb.add_option("--occlusion-radius", radius,
                                "Metres within which things occlude, where occlusion comes from depth; a tenth of the "
                                "depth without it")
-                   ->check(CLI::PositiveNumber);
+                   ->check(aboveZero());
 }
 
 void FoliageFlags::into(Request& request) const {
@@ -55,7 +58,7 @@ void RimFlags::addTo(CLI::App& verb) {
            verb.add_option("--occlusion-radius", radius,
                            "Metres within which things occlude, where occlusion comes from depth; a tenth of the depth "
                            "without it")
-               ->check(CLI::PositiveNumber)};
+               ->check(aboveZero())};
 }
 
 RimRequest RimFlags::request() const {

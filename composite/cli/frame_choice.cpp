@@ -89,7 +89,11 @@ void FrameChoice::put(int frame) const {
     for (const std::string& value : values_[i]) {
       const FramePattern pattern = patternOf(paths_[i], value);
       const bool folder = paths_[i].written == OutputKind::folder && !FramePattern(value).any();
-      values.push_back(folder ? value + "/" + std::to_string(frame) : pattern.any() ? pattern.at(frame) : value);
+      const auto fileOf = [&](const std::string& given) { return fileNamedIn(paths_[i].flag, given); };
+      values.push_back(folder              ? value + "/" + std::to_string(frame)
+                       : !pattern.any()    ? value
+                       : paths_[i].written ? pattern.at(frame)
+                                           : pattern.inputAt(frame, fileOf));
     }
     give(*paths_[i].option, values);
   }

@@ -62,6 +62,7 @@ std::map<std::string, std::string> withSettings(const GbufferFlags& flags,
   const PixelFilter filter = flags.filter.empty() ? PixelFilter() : parsePixelFilter(flags.filter);
   if (!filter.isPixelSquare()) attributes[kFilterAttribute] = filterText(filter);
   if (const auto frame = flags.time.time().frame) attributes["Frame"] = std::to_string(*frame);
+  if (const auto time = timeToState(flags.time.time())) attributes[kTimeAttribute] = timeText(*time);
   const std::optional<Shutter> shutter = flags.blur.shutterAsked();
   if (shutter && shutter->opens()) attributes[kShutterAttribute] = shutterText({shutter->open, shutter->close});
   return attributes;

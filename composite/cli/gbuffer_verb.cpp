@@ -6,6 +6,7 @@
 
 #include "composite/cli/gbuffer_blur.h"
 #include "composite/cli/gbuffer_render.h"
+#include "composite/cli/number_checks.h"
 #include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
@@ -15,8 +16,6 @@
 
 namespace pellucid::cli {
 namespace {
-
-constexpr int kMostSamples = 65536;
 
 // There is no picture yet to say it: linear Rec.709, unless --working-space names another.
 ColourSpace spaceToRender(const GbufferFlags& flags) {
@@ -110,7 +109,7 @@ void addGbuffer(CLI::App& app) {
       "glTF camera by name, eye=X,Y,Z;look=X,Y,Z;up=X,Y,Z;fov=DEGREES (vertical), or fit[:AZIMUTH,ELEVATION], "
       "which frames the scene from there (30,20)");
   verb->add_option("--samples", flags->samples, "Colour samples per pixel; embree 16, gl 1")
-      ->check(CLI::Range(1, kMostSamples));
+      ->check(CLI::Range(1, 65536));
   verb->add_option("--filter", flags->filter,
                    "With embree the pixel filter of the samples, box without: box, triangle, gaussian or "
                    "blackman-harris, each with :RADIUS in pixels to each side or without");
@@ -119,7 +118,7 @@ void addGbuffer(CLI::App& app) {
   verb->add_option("--shadows", flags->shadows, "Default: exact with embree, off with gl")
       ->check(CLI::IsMember({"exact", "off"}));
   verb->add_option("--ao-radius", flags->aoRadius, "Reach of ambient occlusion in metres, embree 1; 0 leaves AO out")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notBelowZero());
   verb->add_option("--texture-filter", flags->textureFilter, "Default: mipmap with gl; embree filters by its samples")
       ->check(CLI::IsMember({"mipmap", "bilinear", "nearest"}));
   verb->add_option("--set", flags->overrides,
@@ -128,9 +127,9 @@ void addGbuffer(CLI::App& app) {
   verb->add_option(
       "--asset-root", flags->assetRoot,
       "Folder whose files a glTF and an OpenColorIO config may name besides those under their own folders");
-  verb->add_option("--unit", flags->unit, "Metres per scene unit")->check(CLI::PositiveNumber)->capture_default_str();
+  verb->add_option("--unit", flags->unit, "Metres per scene unit")->check(aboveZero())->capture_default_str();
   verb->add_option("--lumens-per-watt", flags->lumensPerWatt, "glTF lights are photometric, renders are not")
-      ->check(CLI::PositiveNumber)
+      ->check(aboveZero())
       ->capture_default_str();
   verb->add_option("--device", flags->device, "EGL device by number, see inspect --devices");
   flags->time.addTo(*verb);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "composite/cli/number_checks.h"
 #include "composite/cli/options.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/tiers.h"
@@ -71,7 +72,7 @@ void MethodFlags::addWeightTo(CLI::App& verb, bool takesAuto) {
           "Metres: where power:K and fig6 weigh 1, which shows in no picture (where the scene begins); the unit "
           "of the papers' constants in " +
               referenceWeights())
-      ->check(CLI::PositiveNumber);
+      ->check(aboveZero());
   verb.add_option("--weight-from", weightFrom,
                   "Picture or planes whose weight, range and reference to take: one for a sequence, for sums that add");
 }

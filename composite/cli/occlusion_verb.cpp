@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "composite/cli/number_checks.h"
 #include "composite/cli/occlusion_layer.h"
 #include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
@@ -120,6 +121,7 @@ void addOcclusion(CLI::App& app) {
                    "named indirect or ambient");
   verb->add_option("--direct", flags->direct, "How much of the occlusion darkens direct light too")
       ->check(CLI::Range(0.0, 1.0))
+      ->check(isNumber())
       ->capture_default_str();
   verb->add_option("--source", flags->source, "Occlusion of the opaque picture: its AO channel, or from its depth")
       ->check(CLI::IsMember({"auto", "file", "screen"}))
@@ -127,7 +129,7 @@ void addOcclusion(CLI::App& app) {
   verb->add_option("--radius", flags->radius,
                    "Metres within which things occlude, from depth; a tenth of the depth "
                    "without it")
-      ->check(CLI::PositiveNumber);
+      ->check(aboveZero());
   verb->add_option("--inference", flags->inference, "published is PT17 listing 2 as printed")
       ->check(CLI::IsMember({"relative", "published"}))
       ->capture_default_str();

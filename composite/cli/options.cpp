@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "composite/cli/budget.h"
+#include "composite/cli/number_checks.h"
 #include "engine_bridge/scene/set_keys.h"
 #include "gbuffer/errors.h"
 
@@ -52,12 +53,12 @@ void SceneFlags::addTo(CLI::App& verb) {
   addThinFlag(verb, thin);
   verb.add_option("--scene-unit", unit,
                   "Metres in one unit of the glTF and of the grids of fog; --fog is in metres; --unit is the picture's")
-      ->check(CLI::PositiveNumber)
+      ->check(aboveZero())
       ->capture_default_str();
   verb.add_option("--asset-root", assetRoot,
                   "Folder whose files a glTF and an OpenColorIO config may name besides those under their own folders");
   verb.add_option("--lumens-per-watt", lumensPerWatt, "glTF lights are photometric, renders are not")
-      ->check(CLI::PositiveNumber)
+      ->check(aboveZero())
       ->capture_default_str();
   verb.add_option("--texture-filter", textureFilter, "How textures are read where a texel is not a pixel")
       ->check(CLI::IsMember({"mipmap", "bilinear", "nearest"}))
@@ -111,7 +112,7 @@ void SceneFlags::into(Request& request) const {
 }
 
 void RunFlags::addTo(CLI::App& verb) {
-  verb.add_option("--threads", threads, "0 uses every core")->check(CLI::NonNegativeNumber);
+  verb.add_option("--threads", threads, "0 uses every core")->check(CLI::Range(0, kMostThreads));
   verb.add_flag("--stats", stats, "Print counts and the time of every stage");
   verb.add_flag("--json", json, "Print results as JSON");
 }

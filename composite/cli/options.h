@@ -29,6 +29,8 @@ struct SceneFlags {
   void into(Request& request) const;  // throws UsageError
 };
 
+constexpr int kMostThreads = 1024;
+
 struct RunFlags {
   int threads = 0;
   bool stats = false, json = false;

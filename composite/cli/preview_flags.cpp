@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "composite/cli/messages.h"
+#include "composite/cli/number_checks.h"
 #include "composite/pipeline/colour_step.h"
 #include "gbuffer/errors.h"
 
@@ -28,8 +29,9 @@ void DisplayFlags::addDisplayTo(CLI::App& verb, const std::string& of) {
   verb.add_option(
       "--look", look,
       fmt::format("Of {}: look of the config, in the place of the view's own; the built-in config has none", of));
-  exposureOption_ =
-      verb.add_option("--exposure", exposure, fmt::format("Of {}: stops", of))->check(CLI::Range(-64.0, 64.0));
+  exposureOption_ = verb.add_option("--exposure", exposure, fmt::format("Of {}: stops", of))
+                        ->check(CLI::Range(-64.0, 64.0))
+                        ->check(isNumber());
 }
 
 const char* DisplayFlags::given() const {

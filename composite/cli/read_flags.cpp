@@ -1,5 +1,6 @@
 #include "composite/cli/read_flags.h"
 
+#include "composite/cli/number_checks.h"
 #include "gbuffer/depth_kind.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/producers.h"
@@ -32,12 +33,11 @@ void ReadFlags::addTo(CLI::App& verb, bool allViews) {
         }
         return "";
       });
-  verb.add_option("--far", farValue, "Depth, in the file's unit, from which nothing was hit")
-      ->check(CLI::NonNegativeNumber);
+  verb.add_option("--far", farValue, "Depth, in the file's unit, from which nothing was hit")->check(notBelowZero());
   verb.add_option("--unit", unit,
                   "Metres in one unit of the picture's depth, positions and camera, and of deep files; without it what "
                   "the preset says, else 1. --scene-unit is the glTF's")
-      ->check(CLI::PositiveNumber);
+      ->check(aboveZero());
 }
 
 ReadOptions ReadFlags::options() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "composite/cli/number_checks.h"
 #include "composite/cli/system_flags.h"
 #include "gbuffer/errors.h"
 
@@ -30,7 +31,7 @@ void addWays(CLI::App& verb, RenderFlags& flags) {
           "--tolerance", flags.tolerance,
           "Error to live with, proved for every pixel and channel of the mean of all passes: E times the larger of "
           "1 and the exact value, apart from the file's own rounding")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notBelowZero());
   addSystemFlags(verb, flags.systems, flags.systemWeights);
   verb.add_flag("--measure", flags.measure, "Also composite the sorted truth and print the error against it");
 }
@@ -50,6 +51,7 @@ void RenderFlags::addTo(CLI::App& verb, const RenderVerb& what) {
             ->check(CLI::IsMember({1, 2, 4, 8}))
             ->capture_default_str();
   passes = what.defaultPasses;
+  ofOneMethod_ = what.precision;
   if (what.passes)
     passesOption_ = verb.add_option("--aa", passes, "Jittered passes, averaged; 1 samples pixel centres")
                         ->check(CLI::Range(1, 4096))
@@ -85,6 +87,7 @@ void RenderFlags::paintInto(Request& request) const {
   if (edgesOption_ && edgesOption_->count() > 0) request.edges = edges == "resolve" ? EdgeRule::resolve : EdgeRule::off;
   shadow.into(request);
   stochastic.into(request);
+  if (ofOneMethod_) stochastic.expectRead({request.method}, "--method", request.shadows);
   const bool sums = paintsBy<PaintSums>(request);
   const auto* listed = std::get_if<PaintListed>(&request.paint);
   if (auto* cheapest = std::get_if<PaintCheapest>(&request.paint)) {

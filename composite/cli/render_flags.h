@@ -61,6 +61,7 @@ struct RenderFlags {
  private:
   void paintInto(Request& request) const;
   const CLI::Option *lowResolutionOption_ = nullptr, *edgesOption_ = nullptr, *passesOption_ = nullptr;
+  bool ofOneMethod_ = true;  // which all flags of methods are read by
 };
 
 }  // namespace pellucid::cli

@@ -4,6 +4,7 @@
 
 #include "composite/cli/fog_flags.h"
 #include "composite/cli/gbuffer_render.h"
+#include "composite/cli/number_checks.h"
 #include "composite/cli/results.h"
 #include "composite/cli/verbs.h"
 #include "composite/pipeline/compositor.h"
@@ -101,10 +102,10 @@ void addRender(CLI::App& app) {
                    "Folder whose files a glTF may name besides those under its own folder");
   verb->add_option("--scene-unit", opaque.unit,
                    "Metres in one unit of the glTF and of the grids of fog; --fog is in metres")
-      ->check(CLI::PositiveNumber)
+      ->check(aboveZero())
       ->capture_default_str();
   verb->add_option("--lumens-per-watt", opaque.lumensPerWatt, "glTF lights are photometric, renders are not")
-      ->check(CLI::PositiveNumber)
+      ->check(aboveZero())
       ->capture_default_str();
   opaque.colour.addTo(*verb, "Linear space to render in; auto is linear Rec.709, as glTF has it");
   opaque.preview.addTo(*verb);

@@ -1,9 +1,11 @@
 #include "composite/cli/stochastic_flags.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "composite/cli/number_checks.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -33,10 +35,11 @@ void StochasticFlags::addTo(CLI::App& verb) {
       verb.add_option("--samples-adaptive", adaptive,
                       "Of --method stochastic: more sets of --samples where they are needed, until the standard "
                       "error of a pixel's layers is E times the larger of 1 and their light")
-          ->check(CLI::Range(1e-6, 1.0));
+          ->check(CLI::Range(1e-6, 1.0))
+          ->check(isNumber());
   seedOption_ =
       verb.add_option("--seed", seed, "Of --method stochastic and --shadows stochastic: another seed, other noise")
-          ->check(CLI::NonNegativeNumber)
+          ->check(notBelowZero())
           ->capture_default_str();
   masksOption_ = verb.add_option("--masks", masks, "Of --method stochastic: naive flips a coin per sample")
                      ->check(CLI::IsMember({"stratified", "naive"}))
@@ -53,21 +56,26 @@ void StochasticFlags::addTo(CLI::App& verb) {
           ->capture_default_str();
 }
 
+void StochasticFlags::expectRead(const std::vector<std::string>& methods, const char* verbFlag,
+                                 const ShadowRequest& shadows) const {
+  std::vector<Variant> variants;
+  for (const std::string& method : methods)
+    if (const std::optional<Variant> variant = stochasticVariant(method)) variants.push_back(*variant);
+  for (const CLI::Option* option :
+       {samplesOption_, adaptiveOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
+    if (variants.empty() && option && option->count() > 0 && !(shadows.byMaps() && option == seedOption_))
+      throw UsageError(fmt::format("{}: {} {} draws no random numbers, expected {}", option->get_name(), verbFlag,
+                                   fmt::join(methods, ","), kStochasticNames));
+  const bool corrects = std::find(variants.begin(), variants.end(), Variant::depth) != variants.end();
+  if (correctionOption_ && correctionOption_->count() > 0 && !corrects)
+    throw UsageError(fmt::format("--correction: {} {} is {} corrected, expected stochastic:depth", verbFlag,
+                                 fmt::join(methods, ","), variants[0] == Variant::alpha ? "always" : "never"));
+}
+
 void StochasticFlags::into(Request& request) const {
   request.shadows.seed = static_cast<std::uint32_t>(seed);
-  const std::optional<Variant> variant = stochasticVariant(request.method);
-  if (!variant) {
-    for (const CLI::Option* option :
-         {samplesOption_, adaptiveOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
-      if (option && option->count() > 0 && !(request.shadows.byMaps() && option == seedOption_))
-        throw UsageError(fmt::format("{}: --method {} draws no random numbers, expected {}", option->get_name(),
-                                     request.method, kStochasticNames));
-    return;
-  }
-  if (correctionOption_ && correctionOption_->count() > 0 && *variant != Variant::depth)
-    throw UsageError(fmt::format("--correction: --method {} is {} corrected, expected stochastic:depth", request.method,
-                                 *variant == Variant::alpha ? "always" : "never"));
-  request.paint = PaintSamples{settings(*variant, request.passes), sampledOn == "gl"};
+  if (const std::optional<Variant> variant = stochasticVariant(request.method))
+    request.paint = PaintSamples{settings(*variant, request.passes), sampledOn == "gl"};
 }
 
 StochasticSettings StochasticFlags::settings(Variant variant, int passes) const {

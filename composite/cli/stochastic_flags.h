@@ -20,6 +20,9 @@ struct StochasticFlags {
   // Paints by samples under --method stochastic. Throws UsageError for flags that another method, or a variant, cannot
   // honour; after MethodFlags, ShadowFlags and --aa. The masks are stratified across all passes.
   void into(Request& request) const;
+  // Throws UsageError for flags that none of the methods reads.
+  //   verbFlag  that names methods: "--method"
+  void expectRead(const std::vector<std::string>& methods, const char* verbFlag, const ShadowRequest& shadows) const;
   StochasticSettings settings(StochasticSettings::Variant variant, int passes) const;
 
  private:

@@ -18,7 +18,8 @@ namespace {
 Paint paintOf(const std::string& name, int passes, const StochasticFlags& flags) {
   if (name == "phenomenological") return PaintSums{};
   if (name == "over") return PaintSorted{};
-  if (const auto variant = stochasticVariant(name)) return PaintSamples{flags.settings(*variant, passes), false};
+  if (const auto variant = stochasticVariant(name))
+    return PaintSamples{flags.settings(*variant, passes), flags.sampledOn == "gl"};
   if (const auto chosen = chooseMethod(name)) return PaintListed{*chosen};
   throw UsageError(fmt::format("--methods: found '{}', expected over, phenomenological, {}, {}", name, kStochasticNames,
                                methodNames()));
@@ -71,7 +72,8 @@ void StudyFlags::addTo(CLI::App& verb) {
       ->allow_extra_args(false)
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  verb.add_option("--precision", precisions, "Tiers of phenomenological to compare: float, exact, published")
+  verb.add_option("--precision", precisions,
+                  "Tiers of phenomenological to compare: float, exact, published; others have the first that they take")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"float", "exact", "published"}))
@@ -80,7 +82,7 @@ void StudyFlags::addTo(CLI::App& verb) {
                   "Timed runs of every row after one that is not counted; the median and its spread are printed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  verb.add_option("--threads", run.threads, "0 uses every core")->check(CLI::NonNegativeNumber);
+  verb.add_option("--threads", run.threads, "0 uses every core")->check(CLI::Range(0, kMostThreads));
   verb.add_flag("--json", run.json, "Print the table as JSON");
   shown.addDisplayTo(verb, "study.html");
 }
@@ -92,6 +94,7 @@ Request StudyFlags::base() const {
 }
 
 std::vector<StudyCandidate> StudyFlags::candidates(const Request& base) const {
+  render.stochastic.expectRead(methods, "--methods", base.shadows);
   std::vector<Tier> tiers;
   for (const std::string& precision : precisions) tiers.push_back(tierOf(precision));
   return studyCandidates(base, methods, passes, tiers,

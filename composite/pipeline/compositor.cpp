@@ -192,12 +192,12 @@ Compositor::Run Compositor::prepare(const Request& request) {
   run.plan = plan(request);
   expectWholePixels(request.shot.opaque, shot_->opaque.gbuffer, run.plan.supersampled);
   run.request = &request;
-  journal_.note(run.plan.notes);
   if (run.plan.shutter && run.plan.shutter->opens() && !shot_->moment)
     throw MeaningError(
         fmt::format("{}: --shutter: found no frame in its header (Frame or timeCode), expected one, or --frame N or "
                     "--time SECONDS",
                     request.shot.opaque));
+  journal_.note(run.plan.notes);
   run.lens = lensOf(request.lens, shot_->opaque.document, shot_->opaque.gbuffer, shot_->camera, journal_);
   run.lighting = &lightOf(request);
   run.pass = run.plan.pass;
@@ -363,7 +363,7 @@ Result Compositor::painted(const Request& request, double holdTo) {
   }
   if (!request.layers.empty()) result.veil = widened(std::move(result.veil), gbuffer.data);
   result.layers = veilLayers(request.layers, result.veil);
-  result.layers.insert(result.layers.end(), run.lighting->shadows.layers.begin(), run.lighting->shadows.layers.end());
+  if (!run.lighting->shadows.layer.empty()) result.layers.push_back(shadowLayer(run.lighting->shadows.layer));
   if (!unseen.empty()) result.layers.push_back(unseenLayer(std::move(unseen)));
   if (asks(request.layers, LayerName::edges))
     result.layers.push_back(
@@ -430,12 +430,15 @@ RunCounts Compositor::accumulate(const Request& asked, const std::function<void(
     made.edges = run.plan.edges;
     made.pixelFilter = run.plan.pixelFilter;
     if (i == 0) made.relit = relitPicture(*run.lighting);
+    if (i == 0 && !run.plan.heldOut) made.shadow = run.lighting->shadows.layer;
     if (i == 0 && motion.moves()) made.pictureCamera = taken;
     if (motion.picture() && motion.picture()->gbuffer != &gbuffer) made.now = motion.picture()->gbuffer->beauty;
     shows = shows || anyLayers(made.planes);
     each(std::move(made));
   }
   if (!shows) noteThatNothingShows(*shot_, journal_);
+  if (run.plan.heldOut && !run.lighting->shadows.layer.empty())
+    journal_.note("the layer `shadow` is left out: planes over a deep picture hold its samples, not its pixels");
   for (const auto& file : shot_->deep) journal_.note(file->notes());
   finished_ = true;
   return counts;

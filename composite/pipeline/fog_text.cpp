@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "engine_bridge/scene/blackbody.h"
@@ -127,11 +128,14 @@ std::string textOf(const nlohmann::json& value) {
 FogText readFogText(const std::string& text) {
   FogText fog;
   std::istringstream parts(text);
+  std::set<std::string> seen;
   for (std::string part; std::getline(parts, part, ',');) {
     const auto equals = part.find('=');
     if (equals == std::string::npos)
       throw UsageError(fmt::format("--fog: found '{}', expected key=value or FILE.json", part));
-    setKey(fog, part.substr(0, equals), part.substr(equals + 1));
+    const std::string key = part.substr(0, equals);
+    if (!seen.insert(key).second) throw UsageError(fmt::format("--fog: found {} twice, expected it once", key));
+    setKey(fog, key, part.substr(equals + 1));
   }
   return fog;
 }

@@ -82,6 +82,14 @@ ExtraLayer edgesLayer(const GBuffer& gbuffer, const std::vector<EdgePixel>* edge
   return layer;
 }
 
+ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
+  const Window size{0, 0, multiplier.width(), multiplier.height()};
+  ExtraLayer layer{"shadow", {}};
+  for (int c = 0; c < 3; ++c)
+    layer.channels.emplace_back(kColours[c], planeOf(size, [&](std::size_t i) { return multiplier[i][c]; }));
+  return layer;
+}
+
 ExtraLayer unseenLayer(Image<float> share) {
   ExtraLayer layer{"unseen", {}};
   layer.channels.emplace_back("share", std::move(share));

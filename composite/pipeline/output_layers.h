@@ -20,6 +20,8 @@ bool asks(const std::vector<LayerName>& layers, LayerName name);
 // is 0 and both depths are the pixel's.
 //   edges  null: nowhere
 ExtraLayer edgesLayer(const GBuffer& gbuffer, const std::vector<EdgePixel>* edges);
+// What the beauty is multiplied by where transparent things and fog shadow it.
+ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier);
 // The share of the passes in which a pixel's opaque depth was taken from beside what the picture shows.
 ExtraLayer unseenLayer(Image<float> share);
 // The others show planes of the transparent pass, at pixel centres.

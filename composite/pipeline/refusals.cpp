@@ -4,6 +4,10 @@
 
 namespace pellucid {
 
+bool Refusal::ofMethod() const {
+  return std::string(with).find("{}") != std::string::npos;
+}
+
 bool weighs(const Request& request) {
   if (const auto* listed = std::get_if<PaintListed>(&request.paint)) return listed->method.method->weighs;
   if (const auto* systems = std::get_if<PaintSystems>(&request.paint))
@@ -86,7 +90,7 @@ const std::vector<Refusal>& refusals() {
       {"--normalisation", "one", "--method {}", "none, or a method that normalises",
        "it averages in a way of its own, or not at all",
        [](const Request& r) { return r.sums.normalisation && !normalises(r); }},
-      {"--self-modulation", "a number", "--method {}", "none, or a method that is a weighted sum",
+      {"--self-modulation", "it", "--method {}", "none, or a method that is a weighted sum",
        "it corrects the weighted sum of the transparent pass, which is not made",
        [](const Request& r) { return r.sums.selfModulation && !hasSums(r); }},
       {"--precision", "published", "--tolerance", "float or exact", "its targets hold no bound of an error",

@@ -14,6 +14,7 @@ struct Refusal {
   const char* expected;  // what can
   const char* why;
   bool (*applies)(const Request& request);
+  bool ofMethod() const;  // whether another method would honour it
 };
 
 const std::vector<Refusal>& refusals();

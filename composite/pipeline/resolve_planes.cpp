@@ -102,6 +102,7 @@ void takePictureCamera(const PlanesRequest& request, std::size_t file, const Pas
 // All files' passes, added pass by pass.
 std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) {
   std::vector<PassPlanes> passes = journal.time("read planes", [&] { return readPasses(request.planes[0]); });
+  std::size_t shadows = passes[0].shadow.empty() ? 0 : 1;  // files with a layer `shadow`
   for (std::size_t k = 1; k < request.planes.size(); ++k)
     journal.time("read planes", [&] {
       std::vector<PassPlanes> more = readPasses(request.planes[k]);
@@ -122,6 +123,7 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
                                        filterText(more[0].pixelFilter), filterText(passes[0].pixelFilter),
                                        request.planes[0]));
       if (!more[0].relit.empty()) passes[0].relit = more[0].relit;
+      if (!more[0].shadow.empty() && ++shadows == 1) passes[0].shadow = std::move(more[0].shadow);
       takePictureCamera(request, k, more[0], passes[0]);
       for (std::size_t i = 0; i < passes.size(); ++i) {
         const double factor = referenceFactor(more[i].planes.info.weight, passes[i].planes.info.weight);
@@ -133,6 +135,13 @@ std::vector<PassPlanes> readAll(const PlanesRequest& request, Journal& journal) 
         passes[i].rims.add(more[i].rims);
       }
     });
+  if (shadows > 1) {
+    passes[0].shadow = Image<glm::vec3>();
+    journal.note(
+        fmt::format("{} files of planes have a layer `shadow`, and none is written: what several hide of a "
+                    "light does not multiply; accumulate them together",
+                    shadows));
+  }
   return passes;
 }
 
@@ -250,13 +259,13 @@ Veil veilOfPixels(const PlanesRequest& request, PassPlanes& pass, const ResolveS
       "resolve", [&] { return resolveSums(resolver, std::move(pass.planes), settings, request.lookup, gbuffer, met); });
 }
 
-// Reads the picture that the planes belong to, and checks that they do.
 // Puts a picture's colours as shadows have left them into it; nothing where there are none.
 void lightBy(const Image<glm::vec4>& colours, GBuffer& gbuffer) {
   for (std::size_t i = 0; i < colours.size(); ++i)
     gbuffer.beauty[i] = glm::vec4(glm::vec3(colours[i]), gbuffer.beauty[i].a);
 }
 
+// Reads the picture that the planes belong to, and checks that they do.
 GBuffer readBackground(const PlanesRequest& request, const PassPlanes& first, ResolvedPlanes& result,
                        std::unique_ptr<DeepOpaque>& deep, Journal& journal) {
   const OitPlanes& planes = first.planes;
@@ -286,13 +295,21 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   std::unique_ptr<DeepOpaque> deep;
   const GBuffer gbuffer = readBackground(request, passes[0], result, deep, journal);
   const Image<glm::vec4> relit = passes[0].relit;
+  const Image<glm::vec3> shadow = passes[0].shadow;
   if (std::none_of(passes.begin(), passes.end(), [](const PassPlanes& pass) { return anyLayers(pass.planes); }))
     journal.note(fmt::format("{}: the planes hold no layer: nothing changes", fmt::join(request.planes, ", ")));
   const ResolveSettings settings = settingsOf(request, passes[0].planes);
   Device device(-1);
   ResolvePass* resolver = resolverFor(request, settings, result.info.method, deep != nullptr, device, journal);
   std::vector<ExtraLayer> ofPlanes;
-  if (wantsPlanes(request.layers)) ofPlanes.push_back(planeLayer(request.layers, passes[0].planes));
+  if (wantsPlanes(request.layers)) {
+    ofPlanes.push_back(planeLayer(request.layers, passes[0].planes));
+    if (passes.size() > 1)
+      journal.note(
+          fmt::format("--layers: D, delta, weight and count are those of the first of {} passes, beside the "
+                      "pixels' centres",
+                      passes.size()));
+  }
   const std::vector<EdgePixel> pixels = journal.time("edges", [&] { return edgesOf(passes, result.opaque.gbuffer); });
   const std::unique_ptr<EdgePasses> edges = dealt(pixels, passes);
   const bool wantsUnseen = asks(request.layers, LayerName::unseen);
@@ -325,6 +342,7 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   for (std::size_t i = 0; i < relit.size(); ++i)
     if (relit[i].a > 0.0f) result.picture.touched[i] = 1;
   result.layers = veilLayers(request.layers, result.veil);
+  if (!shadow.empty()) result.layers.push_back(shadowLayer(shadow));
   result.layers.insert(result.layers.end(), ofPlanes.begin(), ofPlanes.end());
   if (wantsUnseen) result.layers.push_back(picture.layer());
   if (asks(request.layers, LayerName::edges)) result.layers.push_back(edgesLayer(result.opaque.gbuffer, &pixels));

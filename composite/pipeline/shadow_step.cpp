@@ -121,16 +121,6 @@ void writeViews(const std::string& path, const ShadowMaps& maps, const std::vect
   journal.note(writeLayers(path, views.window, views.window, views.layers));
 }
 
-ExtraLayer shadowLayer(const Image<glm::vec3>& multiplier) {
-  ExtraLayer layer{"shadow", {}};
-  for (int c = 0; c < 3; ++c) {
-    Image<float> plane(multiplier.width(), multiplier.height());
-    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = multiplier[i][c];
-    layer.channels.emplace_back(std::string(1, "RGB"[c]), std::move(plane));
-  }
-  return layer;
-}
-
 // The lights that shine, and the layers that were named for them.
 struct ShiningLights {
   std::vector<std::size_t> numbers;  // into Scene::lights
@@ -159,7 +149,7 @@ ShiningLights lightsOf(const ShadowRequest& request, const Shot& shot) {
 ShadowCounts darkenWhole(const ShadowRequest& request, const Image<glm::vec3>& multiplier, const Shot& shot,
                          CastShadows& result, Journal& journal) {
   ShadowCounts counts;
-  result.layers.push_back(shadowLayer(multiplier));
+  result.layer = multiplier;
   if (request.apply) {
     result.beauty = shot.opaque.gbuffer.beauty;
     counts = darken(multiplier, result.beauty, result.touched);
@@ -237,7 +227,7 @@ void shadowDeepPicture(const ShadowRequest& request, const ShiningLights& lights
     return air.clear() ? passed : passed * air.passed(lightBlock(shot.scene.lights[light], shot.camera), point);
   };
   DeepShadows dimmed = dimDeepPicture(shot, lights.numbers, visible);
-  result.layers.push_back(shadowLayer(dimmed.multiplier));
+  result.layer = dimmed.multiplier;
   result.touched = Image<std::uint8_t>(dimmed.multiplier.width(), dimmed.multiplier.height(), 0);
   if (request.apply) {
     result.touched = std::move(dimmed.touched);

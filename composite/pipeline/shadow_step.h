@@ -16,7 +16,7 @@ struct CastShadows {
   Image<glm::vec4> beauty;                 // of the picture, dimmed; empty where nothing changed
   std::unique_ptr<DeepOpaque> deepOpaque;  // of a deep picture, dimmed; null where nothing changed
   Image<std::uint8_t> touched;             // opaque pixels that changed; empty when shadows are off
-  std::vector<ExtraLayer> layers;          // `shadow`, where no layer of a light was there to dim
+  Image<glm::vec3> layer;                  // `shadow`, where no layer of a light was there to dim; else empty
   std::shared_ptr<const ShadowMaps> maps;  // null unless shadows are by maps
   std::shared_ptr<const ShadowRays> rays;  // null unless they are by rays
 };

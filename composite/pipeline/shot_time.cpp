@@ -29,6 +29,14 @@ std::optional<ShotMoment> momentOf(const ShotTime& time, const HeaderTime& heade
     moment.origin = fmt::format("{:g} s (--time)", moment.seconds);
     return moment;
   }
+  if (header.stated && !time.frame && !time.framesPerSecond && !time.offset) {
+    moment.frame = header.frame;
+    moment.seconds = header.stated->seconds;
+    moment.framesPerSecond = header.stated->framesPerSecond;
+    moment.origin = fmt::format("{:.6f} s at {:g} frames a second (attribute {})", moment.seconds,
+                                moment.framesPerSecond, kTimeAttribute);
+    return moment;
+  }
   moment.frame = time.frame ? time.frame : header.frame;
   if (!moment.frame) return std::nullopt;
   const double offset = time.offset.value_or(0.0);
@@ -40,6 +48,12 @@ std::optional<ShotMoment> momentOf(const ShotTime& time, const HeaderTime& heade
                                                        : "--fps sets it",
                               offset != 0.0 ? fmt::format(" and {:g} s (--time-offset)", offset) : "");
   return moment;
+}
+
+std::optional<StatedTime> timeToState(const ShotTime& time) {
+  const std::optional<ShotMoment> moment = momentOf(time, {});
+  if (!moment || !(time.seconds || time.framesPerSecond || time.offset)) return std::nullopt;
+  return StatedTime{moment->seconds, moment->framesPerSecond};
 }
 
 void checkShutter(const Shutter& shutter) {

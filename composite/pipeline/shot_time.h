@@ -37,9 +37,12 @@ struct ShotMoment {
   double at(double frames) const { return seconds + frames / framesPerSecond; }
 };
 
-// time = frame / fps + offset, as Blender's exporter writes it. Nothing where neither the request nor the header says
-// when: the glTF then stands as it is stored.
+// time = frame / fps + offset, as Blender's exporter writes it; a header that states the time itself wins over its
+// frame. Nothing where neither the request nor the header says when: the glTF then stands as it is stored.
 std::optional<ShotMoment> momentOf(const ShotTime& time, const HeaderTime& header);
+
+// What a header has to say of it: nothing where a frame at the usual rate says all.
+std::optional<StatedTime> timeToState(const ShotTime& time);
 
 // Throws UsageError for what contradicts itself.
 void checkTime(const ShotTime& time);

@@ -1,6 +1,7 @@
 #include "composite/pipeline/study_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "composite/pipeline/refusals.h"
 #include "composite/study/flip.h"
 #include "composite/study/peak_memory.h"
+#include "gbuffer/errors.h"
 #include "gbuffer/weight_text.h"
 
 namespace pellucid {
@@ -105,10 +107,56 @@ std::vector<std::size_t> orderOf(const std::vector<StudyCandidate>& candidates) 
 
 }  // namespace
 
+namespace {
+
+Request paintedBy(const Request& base, const Paint& paint, Tier tier) {
+  Request request = base;
+  request.paint = paint;
+  request.tier = tier;
+  return request;
+}
+
+bool isOfTiers(const Refusal& row) {
+  return std::string(row.flag) == "--precision" && std::string(row.with).rfind("--method", 0) == 0;
+}
+
+bool takesTier(const Request& base, const Paint& paint, Tier tier) {
+  const Request request = paintedBy(base, paint, tier);
+  return std::none_of(refusals().begin(), refusals().end(),
+                      [&](const Refusal& row) { return isOfTiers(row) && row.applies(request); });
+}
+
+// What some rows do not read is left out there; what none reads would do nothing.
+void refuseUnread(const Request& base, const std::vector<std::string>& methods, const std::vector<Paint>& paints,
+                  const std::vector<Tier>& tiers) {
+  const auto expectAny = [&](const Refusal& row, Tier tier) {
+    const auto reads = [&](const Paint& paint) { return !row.applies(paintedBy(base, paint, tier)); };
+    if (std::none_of(paints.begin(), paints.end(), reads))
+      throw UsageError(fmt::format("{}: found {} with --methods {}, expected {}: {}", row.flag, row.found,
+                                   fmt::join(methods, ","), row.expected, row.why));
+  };
+  for (const Refusal& row : refusals()) {
+    if (row.ofMethod() && !isOfTiers(row)) expectAny(row, Tier::float32);
+    for (const Tier tier : tiers)
+      if (isOfTiers(row)) expectAny(row, tier);
+  }
+}
+
+// Of a method that is no row for each tier.
+Tier tierFor(const Request& base, const Paint& paint, const std::vector<Tier>& tiers) {
+  const auto found = std::find_if(tiers.begin(), tiers.end(), [&](Tier tier) { return takesTier(base, paint, tier); });
+  return found == tiers.end() ? Tier::float32 : *found;
+}
+
+}  // namespace
+
 std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vector<std::string>& methods,
                                             const std::vector<int>& passes, const std::vector<Tier>& tiers,
                                             const std::function<Paint(const std::string&, int)>& paintOf) {
   std::vector<StudyCandidate> candidates;
+  std::vector<Paint> paints;
+  for (const std::string& name : methods) paints.push_back(paintOf(name, passes.front()));
+  refuseUnread(base, methods, paints, tiers);
   for (const int count : passes) {
     candidates.push_back(candidateOf(base, "over", PaintSorted{}, count, Tier::float32));
     for (const std::string& name : methods) {
@@ -116,7 +164,7 @@ std::vector<StudyCandidate> studyCandidates(const Request& base, const std::vect
       const auto* listed = std::get_if<PaintListed>(&paint);
       const std::string shown = listed ? listed->method.name : name;
       if (!std::holds_alternative<PaintSums>(paint)) {
-        candidates.push_back(candidateOf(base, shown, paint, count, Tier::float32));
+        candidates.push_back(candidateOf(base, shown, paint, count, tierFor(base, paint, tiers)));
         continue;
       }
       for (const Tier tier : tiers) candidates.push_back(candidateOf(base, shown, paint, count, tier));

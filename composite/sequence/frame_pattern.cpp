@@ -66,13 +66,20 @@ FramePattern::FramePattern(std::string text) : text_(std::move(text)), pieces_(1
   }
 }
 
-std::string FramePattern::at(int frame) const {
+std::string FramePattern::named(int frame, int more) const {
   std::string path;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     path += pieces_[i].literal;
-    if (i + 1 < pieces_.size()) path += fmt::format("{:0{}d}", frame, pieces_[i].digits);
+    if (i + 1 < pieces_.size()) path += fmt::format("{:0{}d}", frame, pieces_[i].digits + more);
   }
   return path;
+}
+
+std::string FramePattern::inputAt(int frame, const std::function<std::string(const std::string&)>& fileOf) const {
+  const std::string usual = named(frame, 0), other = named(frame, 1);
+  std::error_code unused;
+  const bool onlyOther = frame < 0 && !fs::exists(fileOf(usual), unused) && fs::exists(fileOf(other), unused);
+  return onlyOther ? other : usual;
 }
 
 std::vector<int> FramePattern::onDisk() const {
@@ -90,7 +97,8 @@ std::vector<int> FramePattern::onDisk() const {
     int frame = 0;
     const auto [next, failed] = std::from_chars(name.data() + beginning.size(), name.data() + name.size(), frame);
     std::error_code unused;
-    if (failed == std::errc() && fs::is_regular_file(at(frame), unused)) frames.push_back(frame);
+    const auto itself = [](const std::string& file) { return file; };
+    if (failed == std::errc() && fs::is_regular_file(inputAt(frame, itself), unused)) frames.push_back(frame);
   }
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());

@@ -91,22 +91,29 @@ void PrimitiveReader::charge(std::size_t elements, const JsonView& user) {
   }
 }
 
-// glTF 2.0, 3.7.2.1: a client SHOULD skip what has none.
-bool PrimitiveReader::hasPositions(const JsonView& primitive) {
-  if (primitive.at("attributes").find("POSITION")) return true;
-  notes_->add(primitive.where() + " has no POSITION and is not drawn");
-  return false;
+// glTF 2.0, 3.7.2.1: a client SHOULD skip what has no POSITION. Exporters write what is hidden with accessors of
+// nothing.
+bool PrimitiveReader::hasVertices(const JsonView& primitive) {
+  const auto holdsNothing = [&](const std::optional<JsonView>& reference) {
+    const auto count = reference ? file_->item("accessors", *reference).find("count") : std::nullopt;
+    return count && count->unsignedInteger() == 0;
+  };
+  const std::optional<JsonView> positions = primitive.at("attributes").find("POSITION");
+  const bool empty = holdsNothing(positions) || holdsNothing(primitive.find("indices"));
+  if (!positions) notes_->add(primitive.where() + " has no POSITION and is not drawn");
+  if (empty) notes_->add(primitive.where() + " is empty and is not drawn");
+  return positions && !empty;
 }
 
 std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const Pose& pose, bool decode) {
   const std::size_t mode = primitive.unsignedInteger("mode", kTriangles);
   if (mode > kTriangleFan) primitive.at("mode").refuse(fmt::format("is {}; expected 0 to 6", mode));
-  if (mode == kPoints) return points(primitive, pose);
+  if (mode == kPoints) return hasVertices(primitive) ? points(primitive, pose) : std::nullopt;
   if (mode < kTriangles) {
     ++lines_;
     return std::nullopt;
   }
-  if (!hasPositions(primitive)) return std::nullopt;
+  if (!hasVertices(primitive)) return std::nullopt;
   draco_.reset();
   if (const auto packed = primitive.extension("KHR_draco_mesh_compression"))
     draco_ = std::make_unique<DracoMesh>(*file_, primitive, *packed);
@@ -163,7 +170,7 @@ std::optional<Primitive> PrimitiveReader::points(const JsonView& primitive, cons
   if (pose.moves()) notes_->add(primitive.where() + ": points of skins and morph targets stand as the file has them");
   draco_.reset();
   inPlace_ = stream_;
-  if (!hasPositions(primitive)) return std::nullopt;
+  if (!hasVertices(primitive)) return std::nullopt;
   const JsonView attributes = primitive.at("attributes");
   FilePoints file;
   file.place = printable(file_->path() + ": " + primitive.where());

@@ -182,6 +182,26 @@ TEST_F(Errors, ResultsThatCannotBePrintedAreTold) {
   EXPECT_EQ(shell(program + "--version >&-", folder).code, 0) << "whoever closes it wants no results";
 }
 
+TEST_F(Errors, NumbersBeyondTheirEnds) {
+  const auto said = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> all{"composite", "none.exr", "none.glb", "-o", "out.exr"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    return expectFailure(all, 2);
+  };
+  for (const char* value : {"0", "-2", "inf", "nan", "1e999", "x"})
+    EXPECT_NE(said({std::string("--unit=") + value}).find("--unit: found"), std::string::npos) << value;
+  EXPECT_NE(said({"--unit", "0"}).find("found 0, expected a number above 0"), std::string::npos);
+  EXPECT_NE(said({"--tolerance", "-1"}).find("found -1, expected a number of 0 or more"), std::string::npos);
+  // NaN is within no bounds; a gate that takes it would let everything pass.
+  for (const char* flag : {"--tolerance", "--occlusion-direct", "--occlusion-radius", "--samples-adaptive"})
+    EXPECT_NE(said({flag, "nan"}).find("found nan"), std::string::npos) << flag;
+  for (const char* flag : {"--fail", "--failrelative", "--failpercent", "--hardfail", "--warn"})
+    EXPECT_NE(expectFailure({"compare", "none.exr", "none.exr", flag, "nan"}, 2).find("found nan"), std::string::npos)
+        << flag;
+  // Squares of such places are beyond doubles.
+  EXPECT_NE(said({"--camera", "eye=0,0,1e200;look=0,0,-1;fov=40"}).find("up to 1e+15"), std::string::npos);
+}
+
 TEST_F(Errors, OutputsAreRefusedBeforeAnythingIsRead) {
   // The inputs do not exist: whoever opened one would say so.
   for (const char* name : {"out.png", "out.jpg", "out", "out.exr.txt"}) {

@@ -94,6 +94,7 @@ TEST_F(FogProgram, WrongFogIsRefused) {
   refused({"--fog", "density"}, 2, "key=value");
   refused({"--fog", "thickness=1"}, 2, "thickness");
   refused({"--fog", "density=-1"}, 2, "density=-1");
+  refused({"--fog", "density=1,g=0.1,density=2"}, 2, "density twice");
   refused({"--fog", "density=nan"}, 2, "expected numbers");
   refused({"--fog", "density=1e999"}, 2, "expected numbers");
   refused({"--fog", "g=0.5"}, 2, "density of 0");

@@ -99,6 +99,45 @@ TEST(ShutterText, ReadsBack) {
   }
 }
 
+// As the standard spells it, and as OpenImageIO's writers do.
+TEST(HeaderRate, InBothSpellings) {
+  for (const char* name : {"framesPerSecond", "FramesPerSecond"}) {
+    ExrDocument document;
+    document.parts.emplace_back();
+    const std::int32_t rate[2] = {30000, 1001};
+    document.parts[0].attributes[name] = {"rational", std::string(reinterpret_cast<const char*>(rate), sizeof rate)};
+    ASSERT_TRUE(headerTimeOf(document).framesPerSecond) << name;
+    EXPECT_NEAR(*headerTimeOf(document).framesPerSecond, 29.97, 0.001) << name;
+  }
+}
+
+// What gbuffer says of a time that a frame alone does not tell; flags win over it.
+TEST(StatedTimes, ReadBackAndGiveWayToFlags) {
+  for (const StatedTime& stated : {StatedTime{0.1, 30000.0 / 1001.0}, StatedTime{-1e9, 1e-3}}) {
+    ExrDocument document;
+    document.parts.emplace_back();
+    document.parts[0].attributes[kTimeAttribute] = {"string", timeText(stated)};
+    document.parts[0].attributes["Frame"] = {"string", "12"};
+    const HeaderTime header = headerTimeOf(document);
+    ASSERT_TRUE(header.stated);
+    EXPECT_EQ(header.stated->seconds, stated.seconds);
+    EXPECT_EQ(header.stated->framesPerSecond, stated.framesPerSecond);
+    EXPECT_EQ(momentOf({}, header)->seconds, stated.seconds);
+    EXPECT_EQ(momentOf({}, header)->at(1.0), stated.seconds + 1.0 / stated.framesPerSecond);
+    ShotTime asked;
+    asked.framesPerSecond = 48.0;
+    EXPECT_EQ(momentOf(asked, header)->seconds, 0.25);
+    asked.frame = 24;
+    EXPECT_EQ(momentOf(asked, header)->seconds, 0.5);
+  }
+  for (const char* text : {"", "1", "1:0", "1:-24", "nan:24", "1:inf", "2e9:24", "1:24 "}) {
+    ExrDocument document;
+    document.parts.emplace_back();
+    document.parts[0].attributes[kTimeAttribute] = {"string", text};
+    EXPECT_FALSE(headerTimeOf(document).stated) << text;
+  }
+}
+
 // What is uncovered beside a post lies where neither the post nor the wall lands.
 TEST_F(HeaderShutter, TheLayerUnseenIsTheUncoveredShare) {
   const int x0 = kShotWidth / 2;

@@ -193,6 +193,22 @@ TEST(Geometry, OpaquePointsAndLinesAreNotedAndSkipped) {
   EXPECT_TRUE(noted(scene, "its points are opaque"));
 }
 
+// As exporters write what is hidden or has no face.
+TEST(Geometry, EmptyPrimitivesAreNotedAndSkipped) {
+  Builder builder;
+  builder.triangle();
+  Json& accessors = builder.json["accessors"];
+  const auto none = [&](const char* type, int component) {
+    accessors.push_back({{"componentType", component}, {"count", 0}, {"type", type}});
+    return accessors.size() - 1;
+  };
+  builder.triangle()["indices"] = none("SCALAR", 5123);
+  builder.triangle()["attributes"] = {{"POSITION", none("VEC3", 5126)}};
+  const Scene scene = builder.load();
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_TRUE(noted(scene, "is empty and is not drawn"));
+}
+
 TEST(Geometry, OnlyVerticesThatTrianglesUseAreKept) {
   Builder builder;
   std::vector<float> positions(3000, 0.0f), normals;

@@ -76,6 +76,21 @@ TEST(FramePatterns, FramesOnDisk) {
   EXPECT_TRUE(FramePattern(folder + "/nothing/a.####.exr").onDisk().empty());
 }
 
+// printf counts the minus among the digits, Blender does not.
+TEST(FramePatterns, NegativeFramesAreFoundByBothNames) {
+  const std::string folder = test::freshFolder("negative-patterns");
+  for (const char* name : {"a.-0002.exr", "a.-001.exr", "a.0000.exr", "b.-003.exr", "b.-0003.exr"})
+    std::ofstream(folder + "/" + name) << "x";
+  EXPECT_EQ(FramePattern(folder + "/a.####.exr").onDisk(), (Frames{-2, -1, 0}));
+  EXPECT_EQ(FramePattern(folder + "/a.%04d.exr").onDisk(), (Frames{-2, -1, 0}));
+  const auto fileOf = [](const std::string& value) { return value.substr(0, value.find(".exr") + 4); };
+  const auto input = [&](const char* text, int frame) { return FramePattern(folder + text).inputAt(frame, fileOf); };
+  EXPECT_EQ(input("/a.####.exr:Z", -2), folder + "/a.-0002.exr:Z");
+  EXPECT_EQ(input("/a.####.exr", -1), folder + "/a.-001.exr");
+  EXPECT_EQ(input("/a.####.exr", -7), folder + "/a.-007.exr") << "neither is there";
+  EXPECT_EQ(input("/b.####.exr", -3), folder + "/b.-003.exr") << "both are there";
+}
+
 TEST(FramePatterns, AFileOfJustThisNameIsNoPattern) {
   const std::string folder = test::freshFolder("literal");
   EXPECT_TRUE(inputPattern(folder + "/glass@2x.glb").any());

@@ -174,6 +174,32 @@ TEST_F(Shadow, WithoutLayersItIsALayerAndAppliedOnRequest) {
   EXPECT_EQ(file.gbuffer.beauty.at(30, 30), glm::vec4(.6f, .5f, .4f, 1.0f));
 }
 
+TEST_F(Shadow, TheLayerComesThroughTwoSteps) {
+  writeShot(false);
+  const auto accumulate = [&](const std::string& planes, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"accumulate", "shot.exr", "glass.glb",     "-o",   planes, "--aa", "1",
+                                 "--weight",   "eq5",      "--environment", "0,0,0"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Ended made = runProgram(all, options);
+    EXPECT_EQ(made.code, 0) << made.err;
+  };
+  accumulate("planes.exr", {"--shadows", "exact"});
+  accumulate("without.exr", {});
+  const Ended ended = runProgram({"resolve", "shot.exr", "without.exr", "planes.exr", "-o", "two.exr"}, options);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  ASSERT_EQ(run({"--shadows", "exact"}).code, 0);
+  const OpaqueFile once = out(), twice = readOpaque(folder + "/two.exr", {});
+  for (const char* name : {"shadow.R", "shadow.G", "shadow.B"})
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x)
+        ASSERT_EQ(channel(twice, name, x, y), channel(once, name, x, y)) << name << " " << x << ", " << y;
+  // What two files hide of a light is in neither.
+  const Ended both = runProgram({"resolve", "shot.exr", "planes.exr", "planes.exr", "-o", "both.exr"}, options);
+  ASSERT_EQ(both.code, 0) << both.err;
+  EXPECT_NE(both.err.find("2 files of planes have a layer `shadow`"), std::string::npos) << both.err;
+  EXPECT_EQ(readOpaque(folder + "/both.exr", {}).document.parts[0].find("shadow.R"), nullptr);
+}
+
 TEST_F(Shadow, MistakesAreOneSentence) {
   writeShot(true);
   writeGlass("dark.glb", false);

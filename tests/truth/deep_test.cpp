@@ -188,6 +188,29 @@ TEST(Deep, ViewsOfOnePart) {
   EXPECT_THROW(resolveDeep(document, "middle"), MeaningError);
 }
 
+// Parts of no view go by their names.
+TEST(Deep, PartsByName) {
+  ExrDocument document;
+  document.path = "parts.exr";
+  for (const char* name : {"smoke", "glass"}) {
+    ExrPart part;
+    part.deep = true;
+    part.name = name;
+    for (const char* channel : {"A", "B", "G", "R", "Z"}) {
+      part.channels.emplace_back();
+      part.channels.back().name = channel;
+    }
+    document.parts.push_back(part);
+  }
+  const DeepChannels first = resolveDeep(document);
+  EXPECT_EQ(first.part, 0);
+  EXPECT_EQ(first.note, "parts.exr: of 2 deep parts smoke is taken; --view names another");
+  EXPECT_EQ(resolveDeep(document, "glass").part, 1);
+  EXPECT_THROW(resolveDeep(document, "left"), MeaningError);
+  document.parts[0].view = "left";
+  EXPECT_THROW(resolveDeep(document, "smoke"), MeaningError) << "a part of a view goes by that";
+}
+
 TEST(Deep, WhatIsLackingIsNamed) {
   const std::string folder = freshFolder("deep-lacking");
   DeepRows rows;

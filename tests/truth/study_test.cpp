@@ -160,6 +160,47 @@ TEST(Study, SamplesAndTiersAreRowsOfTheirOwn) {
   EXPECT_EQ(runProgram({"study", "opaque.exr", "glass.glb", "-o", "out", "--aa", "0"}, options).code, 2);
 }
 
+// A flag belongs to the rows that read it; one that no row reads would do nothing.
+TEST(Study, FlagsOfSomeMethods) {
+  const std::string folder = freshFolder("study-flags");
+  RunOptions options;
+  options.folder = folder;
+  writeOpaque(folder + "/opaque.exr");
+  writeGlb(folder + "/glass.glb", {Quad{{-1, -1, -4}, {2, 0, 0}, {0, 2, 0}, unlit(.9f, .2f, .1f, .5f)},
+                                   Quad{{-1, -1, -3}, {2, 0, 0}, {0, 2, 0}, unlit(.1f, .8f, .3f, .3f)}});
+  const auto study = [&](const std::string& methods, const std::vector<std::string>& flags) {
+    std::vector<std::string> all{"study", "opaque.exr", "glass.glb", "-o", "out", "--json", "--methods", methods};
+    all.insert(all.end(), flags.begin(), flags.end());
+    return runProgram(all, options);
+  };
+  const auto errorOf = [&](const std::vector<std::string>& flags) {
+    const Ended ended = study("stochastic:basic,weighted", flags);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return ended.code == 0 ? nlohmann::json::parse(ended.out)[1]["rmse"].get<double>() : -1.0;
+  };
+  const double few = errorOf({"--samples", "4"});
+  EXPECT_GT(few, errorOf({"--samples", "256"}));
+  EXPECT_NE(few, errorOf({"--samples", "4", "--seed", "5"}));
+  errorOf({"--sampled-on", "gl"});
+  errorOf({"--weight", "eq7"});
+  errorOf({"--precision", "exact"});
+  struct Case {
+    const char* methods;
+    std::vector<std::string> flags;
+  };
+  for (const Case& each :
+       {Case{"weighted,average", {"--samples", "32"}}, Case{"over", {"--seed", "3"}},
+        Case{"stochastic:alpha", {"--correction", "off"}}, Case{"average,over", {"--weight", "eq7"}},
+        Case{"average", {"--weight-range", "1:20"}}, Case{"mlab:4", {"--normalisation", "published"}},
+        Case{"average", {"--self-modulation"}}, Case{"over", {"--resolve", "gl"}},
+        Case{"unsorted", {"--precision", "exact"}}, Case{"weighted,over", {"--precision", "float,published"}}}) {
+    const Ended ended = study(each.methods, each.flags);
+    EXPECT_EQ(ended.code, 2) << each.methods << each.flags[0];
+    EXPECT_NE(ended.err.find(each.flags[0] + ":"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find(std::string("--methods ") + each.methods), std::string::npos) << ended.err;
+  }
+}
+
 TEST(WeightAuto, WhatItPrintsAsksForTheSamePicture) {
   const std::string folder = freshFolder("weight-again");
   RunOptions options;
