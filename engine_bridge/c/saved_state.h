@@ -6,7 +6,7 @@
 
 namespace pellucid::c {
 
-constexpr int kMostUnits = 32;   // of which a host may choose for the seam
+constexpr int kMostUnits = 32;  // of which a host may choose for the seam
 
 // A run of texture units: GL_TEXTURE_2D and sampler bindings of first .. first + count - 1.
 struct Units {
