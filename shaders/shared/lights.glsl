@@ -7,7 +7,7 @@ struct PunctualLight {
   vec4 cone;       // spot: x scale, y offset of the cosine; full inside, none outside
 };
 
-const float PLD_NEAREST_LIGHT = 1e-3f;  // metres: a point light is not a singularity
+const float PLD_NEAREST_LIGHT = 1e-6f;  // metres: a point light is no singularity, in scenes of millimetres too
 
 struct Arriving {
   vec3 toLight;     // unit

@@ -11,7 +11,7 @@ namespace pellucid::reference {
 namespace {
 
 constexpr double kLeastRoughness = 0.03;  // of highlights
-constexpr double kNearest = 1e-3;         // metres: a lamp is no singularity
+constexpr double kNearest = 1e-6;         // metres: a lamp is no singularity
 constexpr double kLeastCone = 1e-3;       // of the cosines between which a spot fades, KHR_lights_punctual
 
 // Smith's masking of microfacets that know of one another's height, over 4 cosines.
