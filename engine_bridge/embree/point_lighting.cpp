@@ -47,7 +47,8 @@ class SurfaceDirections {
       const glm::vec3 half = glm::normalize(towards + point_.toEye);
       const float cosHalf = std::clamp(glm::dot(point_.normal, half), 0.0f, 1.0f);
       const float across = std::max(glm::dot(towards, half), 1e-6f);
-      result += highlight_ * shading::ggxDensity(cosHalf, a2_) * cosHalf / (4.0f * across);
+      const float facets = shading::ggxDensity(shading::sineSquaredBetween(point_.normal, half), a2_);
+      result += highlight_ * facets * cosHalf / (4.0f * across);
     }
     return result;
   }

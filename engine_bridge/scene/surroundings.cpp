@@ -148,7 +148,7 @@ glm::vec3 sampledLobe(const std::vector<Square>& pyramid, glm::vec3 axis, float 
     const glm::vec3 facet = facetOf(pointOf(i, samples), a2);
     const glm::vec3 local = 2.0f * facet.z * facet - glm::vec3(0, 0, 1);
     if (local.z <= 0.0f) continue;
-    const float density = ggxDensity(facet.z, a2) * 0.25f;
+    const float density = ggxDensity(facet.x * facet.x + facet.y * facet.y, a2) * 0.25f;
     const float detail = 0.5f * std::log2(2.0f / (static_cast<float>(samples) * density * texel));
     const float level = std::clamp(detail, 0.0f, static_cast<float>(pyramid.size() - 1));
     const auto fine = static_cast<std::size_t>(level);
@@ -182,7 +182,7 @@ glm::vec3 summedLobe(const std::vector<Texel>& texels, glm::vec3 axis, float a2)
     const float cosine = glm::dot(texel.direction, axis);
     if (cosine <= 0.0f) continue;
     // Half way between axis and direction.
-    const float own = texel.angle * cosine * (a2 < 0.0f ? 1.0f : ggxDensity(std::sqrt(0.5f * (1.0f + cosine)), a2));
+    const float own = texel.angle * cosine * (a2 < 0.0f ? 1.0f : ggxDensity(0.5f * (1.0f - cosine), a2));
     sum += own * texel.radiance;
     weight += own;
   }

@@ -104,10 +104,20 @@ PLD_FN vec3 transmissionAt(Surface surface, float cosEye) {
   return clamp(t, vec3(0.0f), vec3(1.0f));
 }
 
-// Microfacets whose normal lies at this cosine, GGX. 1/sr
+// Square of the sine between two unit vectors, 1 beyond a right angle. Near 0 a cosine in floats keeps too little of it
+// for a narrow highlight.
+PLD_FN float sineSquaredBetween(vec3 a, vec3 b) {
+  precise float cosine = dot(a, b);
+  if (cosine <= 0.0f) return 1.0f;
+  precise vec3 across = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+  precise float squared = dot(across, across);
+  return min(squared, 1.0f);
+}
+
+// Microfacets whose normal lies at this sine from the surface's, GGX. 1/sr
 //   a2  roughness to the power of 4
-PLD_FN float ggxDensity(float cosHalf, float a2) {
-  precise float spread = cosHalf * cosHalf * (a2 - 1.0f) + 1.0f;
+PLD_FN float ggxDensity(float sineSquared, float a2) {
+  precise float spread = sineSquared * (1.0f - a2) + a2;
   precise float d = a2 / (PLD_PI * spread * spread);
   return d;
 }
@@ -118,11 +128,10 @@ PLD_FN vec3 reflectTowardsEye(Surface surface, vec3 normal, vec3 toEye, vec3 toL
   if (cosLight <= 0.0f) return vec3(0.0f);
   float cosEye = max(dot(normal, toEye), 1e-4f);
   vec3 toHalf = normalize(toLight + toEye);
-  float cosHalf = clamp(dot(normal, toHalf), 0.0f, 1.0f);
   float roughness = max(surface.roughness, PLD_MIN_ROUGHNESS);
   precise float a = roughness * roughness;
   precise float a2 = a * a;
-  float d = ggxDensity(cosHalf, a2);
+  float d = ggxDensity(sineSquaredBetween(normal, toHalf), a2);
   precise float maskEye = cosLight * sqrt(cosEye * cosEye * (1.0f - a2) + a2);
   precise float maskLight = cosEye * sqrt(cosLight * cosLight * (1.0f - a2) + a2);
   precise float visible = 0.5f / (maskEye + maskLight);

@@ -8,8 +8,7 @@
 namespace pellucid::reference {
 namespace {
 
-constexpr double kCosineOff = 4e-7;  // of what floats round
-constexpr double kTilt = 2e-6;       // of normals and directions that are floats
+constexpr double kTilt = 2e-6;  // of normals and directions that are floats
 // Nearer to a place, as a part of its distance from the eye, whether something stands before it floats do not tell.
 constexpr double kUnsure = 3e-5;
 
@@ -79,17 +78,12 @@ Picture::Reflected Picture::lampLight(const Place& place, const Vec3& toEye) con
     const Sent sent = sentBy(lamp, place.at);
     const Vec3 light = reflectedTowards(surface, normal, toEye, sent.towards) * sent.irradiance;
     Vec3 off(0.0);
-    const auto differ = [&](const Vec3& tilted, double cosineOff) {
-      const Vec3 other = reflectedTowards(surface, tilted, toEye, sent.towards, cosineOff) * sent.irradiance;
-      off = glm::max(off, glm::abs(other - light));
-    };
-    differ(normal, kCosineOff);
-    differ(normal, -kCosineOff);
     for (glm::length_t axis = 0; axis < 3; ++axis)
       for (const double side : {-kTilt, kTilt}) {
         Vec3 tilt(0.0);
         tilt[axis] = side;
-        differ(glm::normalize(normal + tilt), 0.0);
+        const Vec3 tilted = glm::normalize(normal + tilt);
+        off = glm::max(off, glm::abs(reflectedTowards(surface, tilted, toEye, sent.towards) * sent.irradiance - light));
       }
     const bool shadowed = scene_.shadows && sent.irradiance != Vec3(0.0) && light != Vec3(0.0);
     const Reflected part = shadowed ? arriving(place, sent) : Reflected{Vec3(1.0), Vec3(0.0)};

@@ -59,12 +59,12 @@ Sent sentBy(const PunctualLamp& lamp, const Vec3& point) {
   return {path / metres, lamp.intensity * part, metres};
 }
 
-Vec3 reflectedTowards(const Finished& surface, const Vec3& normal, const Vec3& toEye, const Vec3& toLamp, double off) {
+Vec3 reflectedTowards(const Finished& surface, const Vec3& normal, const Vec3& toEye, const Vec3& toLamp) {
   const double cosLamp = glm::dot(normal, toLamp), cosEye = glm::dot(normal, toEye);
   if (!(cosLamp > 0.0)) return Vec3(0.0);
   const Vec3 half = glm::normalize(toEye + toLamp);
   const double a = std::pow(std::max(surface.roughness, kLeastRoughness), 2.0), a2 = a * a;
-  const double cosHalf = std::clamp(glm::dot(normal, half) + off, 0.0, 1.0);
+  const double cosHalf = std::clamp(glm::dot(normal, half), 0.0, 1.0);
   const double spread = 1.0 - cosHalf * cosHalf * (1.0 - a2);
   const double facets = a2 / (std::numbers::pi * spread * spread);
   const Vec3 mirrored = interfaceColour(surface, std::clamp(glm::dot(toEye, half), 0.0, 1.0));

@@ -31,9 +31,7 @@ struct Sent {
 Sent sentBy(const PunctualLamp& lamp, const Vec3& point);
 
 // 1/sr, the cosine included. All directions unit, the normal on the side of the eye.
-//   off  added to the cosine between normal and half-way vector, to learn what rounding it does
-Vec3 reflectedTowards(const Finished& surface, const Vec3& normal, const Vec3& toEye, const Vec3& toLamp,
-                      double off = 0.0);
+Vec3 reflectedTowards(const Finished& surface, const Vec3& normal, const Vec3& toEye, const Vec3& toLamp);
 
 // What a surface of a coat leaves of a lamp's light, where that crosses it: PT17 eqs. 11-13 as the model settles them.
 //   hidden  of it at the angle, coverage times 1 - transmission
