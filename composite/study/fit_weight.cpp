@@ -9,16 +9,39 @@
 namespace pellucid {
 namespace {
 
-constexpr std::size_t kKept = 6;     // of the rough tries
-constexpr std::size_t kRefined = 3;  // of those, one of a kind
+constexpr std::size_t kKept = 6;                      // of the rough tries
+constexpr std::size_t kRefined = 3;                   // of those, one of a kind
+constexpr float kNearShares[] = {0.25f, 0.5f, 0.9f};  // where a range begins, of where the layers do
 
 struct Try {
   shading::WeightSettings weight;
   double error = 0.0;
 };
 
+// Of errors that differ by less, none is better: the scene's unit and roundings move them as far.
+constexpr double kTie = 1e-3;
+
 bool isBetter(const Try& a, const Try& b) {
-  return a.error < b.error;
+  return a.error < (1.0 - kTie) * b.error;
+}
+
+// The first of those that no other is better than: of equals the order chooses.
+std::size_t firstOfBest(const std::vector<Try>& all) {
+  std::size_t least = 0, first = 0;
+  for (std::size_t i = 1; i < all.size(); ++i)
+    if (all[i].error < all[least].error) least = i;
+  while (isBetter(all[least], all[first])) ++first;
+  return first;
+}
+
+std::vector<Try> bestFirst(std::vector<Try> all, std::size_t most) {
+  std::vector<Try> sorted;
+  while (!all.empty() && sorted.size() < most) {
+    const std::size_t next = firstOfBest(all);
+    sorted.push_back(all[next]);
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+  return sorted;
 }
 
 // As --weight asks for it.
@@ -45,7 +68,7 @@ void varyRow(const DepthWeight& row, const shading::WeightSettings& given, const
              std::vector<shading::WeightSettings>& all) {
   shading::WeightSettings weight = listed(row, given, 1.0f);
   if (row.readsRange)
-    for (const float nearShare : {0.25f, 0.5f, 0.9f})
+    for (const float nearShare : kNearShares)
       for (const float farShare : {1.1f, 4.0f, 100.0f}) {
         weight.rangeNear = depths.nearest * nearShare;
         weight.rangeFar = depths.farthest * farShare;
@@ -76,27 +99,44 @@ float* numberOf(shading::WeightSettings& weight) {
   return row->reference == WeightReference::unit ? &weight.reference : nullptr;
 }
 
+// Where steps begin: how a range begins matters most where it ends, so each of its beginnings is gone from.
+std::vector<shading::WeightSettings> beginningsOf(const shading::WeightSettings& weight, const WeighedDepths& depths) {
+  std::vector<shading::WeightSettings> all{weight};
+  if (depthWeightOf(weight.kind)->readsRange)
+    for (const float share : kNearShares) {
+      all.push_back(weight);
+      all.back().rangeNear = depths.nearest * share;
+    }
+  return all;
+}
+
 class Fitter {
  public:
-  explicit Fitter(const WeightError& whole, WeightFit& fit) : whole_(whole), fit_(fit) {}
+  Fitter(const WeightError& rough, const WeightError& whole) : rough_(rough), whole_(whole) {}
 
-  Try attempt(const shading::WeightSettings& weight) {
-    const Try made{weight, whole_(weight)};
-    fit_.tried.emplace_back(weightText(weight), made.error);
-    if (fit_.tried.size() == 1 || made.error < fit_.meanError) {
-      fit_.meanError = made.error;
-      fit_.weight = weight;
-    }
-    return made;
-  }
+  void attempt(const shading::WeightSettings& weight) { tried_.push_back({weight, whole_(weight)}); }
+  const std::vector<Try>& tried() const { return tried_; }
 
-  // Steps around the number on some probes, each half as long as the one before; where they end is tried on all.
-  void refine(const shading::WeightSettings& from, const WeightError& rough) {
+  // On some probes; where the steps end is tried on all.
+  void refine(const shading::WeightSettings& from, const WeighedDepths& depths) {
     Try best{from, 0.0};
     if (!numberOf(best.weight)) return;
-    const DepthWeight* row = depthWeightOf(best.weight.kind);
-    best.error = rough(best.weight);
+    best.error = rough_(from);
     bool moved = false;
+    for (const shading::WeightSettings& weight : beginningsOf(from, depths)) {
+      const Try reached = stepped(weight);
+      if (!isBetter(reached, best)) continue;
+      best = reached;
+      moved = true;
+    }
+    if (moved) attempt(best.weight);
+  }
+
+ private:
+  // Steps around the number, each half as long as the one before.
+  Try stepped(const shading::WeightSettings& from) const {
+    const DepthWeight* row = depthWeightOf(from.kind);
+    Try best{from, rough_(from)};
     for (float step = 0.32f; step > 0.005f; step *= 0.5f) {
       const Try centre = best;
       for (const float factor : {1.0f / (1.0f + step), 1.0f + step}) {
@@ -105,25 +145,27 @@ class Fitter {
         number *= factor;
         if (row->parameter && !row->perMetre) number = std::clamp(number, row->least, row->fitMost);
         if (row->readsRange && !(other.weight.rangeFar > other.weight.rangeNear)) continue;
-        other.error = rough(other.weight);
-        if (!isBetter(other, best)) continue;
-        best = other;
-        moved = true;
+        other.error = rough_(other.weight);
+        if (isBetter(other, best)) best = other;
       }
     }
-    if (moved) attempt(best.weight);
+    return best;
   }
 
- private:
+  const WeightError& rough_;
   const WeightError& whole_;
-  WeightFit& fit_;
+  std::vector<Try> tried_;
 };
 
-std::vector<Try> tried(const std::vector<shading::WeightSettings>& weights, const WeightError& error) {
-  std::vector<Try> all;
-  for (const shading::WeightSettings& weight : weights) all.push_back({weight, error(weight)});
-  std::stable_sort(all.begin(), all.end(), isBetter);
-  return all;
+std::vector<Try> bestOfKinds(const std::vector<Try>& tried) {
+  std::vector<Try> kinds;
+  for (const Try& one : bestFirst(tried, tried.size())) {
+    const bool known =
+        std::any_of(kinds.begin(), kinds.end(), [&](const Try& k) { return k.weight.kind == one.weight.kind; });
+    if (!known) kinds.push_back(one);
+    if (kinds.size() == kRefined) break;
+  }
+  return kinds;
 }
 
 }  // namespace
@@ -141,31 +183,30 @@ WeightFit fitWeight(const shading::WeightSettings& given, const WeighedDepths& d
   WeightFit fit;
   fit.weight = given;
   if (!(depths.nearest > 0.0f)) return fit;
-  Fitter fitter(whole, fit);
-  std::vector<shading::WeightSettings> asListed, varied;
+  Fitter fitter(rough, whole);
+  std::vector<shading::WeightSettings> asListed;
+  std::vector<Try> varied;
   for (const DepthWeight& row : kDepthWeights) {
     if (!row.fitted) continue;
     listRow(row, given, asListed);
-    varyRow(row, given, depths, varied);
+    std::vector<shading::WeightSettings> ofRow;
+    varyRow(row, given, depths, ofRow);
+    for (const shading::WeightSettings& weight : ofRow) varied.push_back({weight, 0.0});
   }
-  std::vector<Try> best{fitter.attempt(asListed[0])};
-  const Try first = best[0];
-  if (first.error <= least) return fit;  // nothing can be gained
-  for (std::size_t i = 1; i < asListed.size(); ++i) best.push_back(fitter.attempt(asListed[i]));
-  const std::vector<Try> likely = tried(varied, rough);
-  for (std::size_t i = 0; i < std::min(kKept, likely.size()); ++i) best.push_back(fitter.attempt(likely[i].weight));
-  std::stable_sort(best.begin(), best.end(), isBetter);
-  std::vector<int> refined;
-  for (const Try& one : best) {
-    if (refined.size() == kRefined) break;
-    if (std::find(refined.begin(), refined.end(), one.weight.kind) != refined.end()) continue;
-    refined.push_back(one.weight.kind);
-    fitter.refine(one.weight, rough);
+  fitter.attempt(asListed[0]);
+  const Try first = fitter.tried()[0];
+  std::size_t chosen = 0;
+  if (first.error > least) {  // else nothing can be gained
+    for (std::size_t i = 1; i < asListed.size(); ++i) fitter.attempt(asListed[i]);
+    for (Try& one : varied) one.error = rough(one.weight);
+    for (const Try& likely : bestFirst(varied, kKept)) fitter.attempt(likely.weight);
+    for (const Try& one : bestOfKinds(fitter.tried())) fitter.refine(one.weight, depths);
+    chosen = firstOfBest(fitter.tried());
+    if (!(fitter.tried()[chosen].error < first.error - least)) chosen = 0;
   }
-  if (!(fit.meanError < first.error - least)) {
-    fit.weight = first.weight;
-    fit.meanError = first.error;
-  }
+  fit.weight = fitter.tried()[chosen].weight;
+  fit.meanError = fitter.tried()[chosen].error;
+  for (const Try& one : fitter.tried()) fit.tried.emplace_back(weightText(one.weight), one.error);
   std::stable_sort(fit.tried.begin(), fit.tried.end(),
                    [](const auto& a, const auto& b) { return a.second < b.second; });
   return fit;
