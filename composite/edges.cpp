@@ -69,6 +69,7 @@ class Finder {
   static void setPlanes(const PlaneNear& own, const PlaneNear& beside, Side other, EdgePixel& edge);
   std::optional<Mixture> mixtureAt(int x, int y, Side other) const;
   static bool leavesOwn(Side other, Mixture& mixture);
+  bool isAsBeside(int x, int y, const Mixture& mixture) const;
   std::optional<EdgePixel> edgeAt(int x, int y) const;
   std::optional<EdgePixel> edgeBeside(int x, int y, Side other, bool mostlyOwn) const;
 
@@ -285,6 +286,19 @@ bool Finder::leavesOwn(Side other, Mixture& mixture) {
   return true;
 }
 
+// Whether the colour is that of a pixel beside, on the same surface, that no edge touches: such a pixel is no mixture,
+// whatever the mean of those about it is mixed with, as where two sides of a box meet.
+bool Finder::isAsBeside(int x, int y, const Mixture& mixture) const {
+  const double same = kPure * glm::length(mixture.nearer - mixture.farther);
+  const glm::dvec4 colour(gbuffer_.beauty.at(x, y));
+  for (int v = y - 1; v <= y + 1; ++v)
+    for (int u = x - 1; u <= x + 1; ++u)
+      if (sides_.inside(u, v) && !sides_.touchesEdge(u, v) && sides_.sideOf(x, y, u, v) == Side::own &&
+          glm::length(colour - glm::dvec4(gbuffer_.beauty.at(u, v))) <= same)
+        return true;
+  return false;
+}
+
 std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostlyOwn) const {
   const glm::dvec4 colour(gbuffer_.beauty.at(x, y));
   std::optional<Mixture> mixture = mixtureAt(x, y, other);
@@ -292,6 +306,7 @@ std::optional<EdgePixel> Finder::edgeBeside(int x, int y, Side other, bool mostl
   const std::optional<PlaneNear> own = planeOf(x, y, Side::own), beside = planeOf(x, y, other);
   if (!own || !beside) return std::nullopt;
   if (std::isinf((other == Side::nearer ? own : beside)->plane.centre)) readAlpha(colour.a, *mixture);
+  if (!mixture->byObjects && isAsBeside(x, y, *mixture)) return std::nullopt;
   if (!mixture->byObjects && mostlyOwn && !leavesOwn(other, *mixture)) return std::nullopt;
   const double least = std::max(kPure, kTold * mixture->off);
   if (!(mixture->share > least && mixture->share < 1.0 - least)) return std::nullopt;

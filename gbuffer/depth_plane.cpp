@@ -10,8 +10,10 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kReach = kPlaneReach;
+constexpr int kKnown = 2 * kReach;  // around a part: neighbours that tell a slope, and theirs
 // Two pixels side by side that continue nothing are taken for one surface where what is linear changes by less.
 constexpr double kPairChange = 1.0 / 16.0;
+constexpr double kKink = 8.0;
 constexpr double kGrazing = 1.0 / 64.0;  // a normal this square to the ray tells no slope
 
 // Along one axis through a pixel: what is linear on a plane, as a part of its value at the pixel.
@@ -44,16 +46,22 @@ std::optional<double> straightSlope(const Line& line) {
   return (line.at(longer) - 1.0) / longer;
 }
 
-// On curved surfaces: where the slope changes by less than a quarter of itself across the pixel, or less than half to
-// one side of it.
+// On curved surfaces: where the slope changes by less than a quarter of itself across the pixel.
 std::optional<double> curvedSlope(const Line& line) {
   const double steepest = std::max(std::abs(line.at(1) - 1.0), std::abs(line.at(-1) - 1.0));
   if (line.bend(0) <= 0.25 * steepest) return 0.5 * (line.at(1) - line.at(-1));
+  return std::nullopt;
+}
+
+// At the end of a curved surface: where the slope changes by less than half to one side of the pixel.
+std::optional<double> slopeToOneSide(const Line& line) {
   const double bends[2] = {line.bend(1), line.bend(-1)};
   const double least = std::fmin(bends[0], bends[1]);  // NaN where there is no side
   const int side = bends[0] == least ? 1 : -1;
   const double change = line.at(side) - 1.0;
   if (!(least <= 0.5 * std::abs(change))) return std::nullopt;
+  // Curves bend little by little: what all but ends bending at the neighbour is a plane of its own.
+  if (least > kKink * (line.bend(2 * side) + line.rounding)) return std::nullopt;
   // A neighbour to the other side beyond which there is nothing tells no bend, but may lie much more level.
   if (std::isnan(bends[side == 1 ? 1 : 0]) && std::abs(line.at(-side) - 1.0) < 0.5 * std::abs(change))
     return std::nullopt;
@@ -77,7 +85,7 @@ double roundingOf(double precision) {
   return 2.0 * precision;
 }
 
-std::optional<double> slopeOf(const Line& line) {
+std::optional<double> slopeThrough(const Line& line) {
   const std::optional<double> slope = straightSlope(line);
   return slope ? slope : curvedSlope(line);
 }
@@ -117,8 +125,8 @@ class NormalSlopes {
 class LinearDepth {
  public:
   LinearDepth(const Image<float>& viewZ, bool orthographic, const Window& part)
-      : known_{std::max(part.x0 - kReach, 0), std::max(part.y0 - kReach, 0), std::min(part.x1 + kReach, viewZ.width()),
-               std::min(part.y1 + kReach, viewZ.height())},
+      : known_{std::max(part.x0 - kKnown, 0), std::max(part.y0 - kKnown, 0), std::min(part.x1 + kKnown, viewZ.width()),
+               std::min(part.y1 + kKnown, viewZ.height())},
         linear_(known_.width(), known_.height()) {
     tbb::parallel_for(known_.y0, known_.y1, [&](int y) {
       for (int x = known_.x0; x < known_.x1; ++x) {
@@ -128,7 +136,7 @@ class LinearDepth {
     });
   }
   double at(int x, int y) const { return linear_.at(x - known_.x0, y - known_.y0); }
-  // Through a pixel of the part.
+  // Through a pixel of the part, or within reach of one.
   Line through(int x, int y, int dx, int dy, double rounding) const {
     Line line{};
     line.rounding = rounding;
@@ -146,10 +154,28 @@ class LinearDepth {
   Image<double> linear_;
 };
 
+// Where a pixel's own row does not tell its plane, the rows of those do that lie on one line with it across: the edge
+// of a surface need not be that of the next row.
+std::optional<double> slopeOfRowsBeside(const LinearDepth& linear, int x, int y, int axis, double rounding) {
+  const int dx = 1 - axis, dy = axis;
+  const Line across = linear.through(x, y, dy, dx, rounding);
+  const int lengths[2] = {run(across, -1), run(across, 1)};
+  for (int k = 1; k <= kReach; ++k)
+    for (const int side : {-1, 1}) {
+      const int length = lengths[side == 1 ? 1 : 0];
+      if (k > length || (length < 2 && !across.straight(0))) continue;
+      const auto slope = straightSlope(linear.through(x + side * k * dy, y + side * k * dx, dx, dy, rounding));
+      if (slope) return *slope * across.at(side * k);
+    }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<double> slopeAlong(const PlaneValues& values, double precision) {
-  return slopeOf({values, roundingOf(precision)});
+  const Line line{values, roundingOf(precision)};
+  const std::optional<double> slope = slopeThrough(line);
+  return slope ? slope : slopeToOneSide(line);
 }
 
 DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera)
@@ -168,7 +194,9 @@ DepthPlanes::DepthPlanes(const GBuffer& gbuffer, const Camera& camera, const Win
       if (std::isnan(linear.at(x, y))) continue;
       for (const int axis : {0, 1}) {
         const Line line = linear.through(x, y, 1 - axis, axis, rounding);
-        std::optional<double> slope = slopeOf(line);
+        std::optional<double> slope = slopeThrough(line);
+        if (!slope) slope = slopeOfRowsBeside(linear, x, y, axis, rounding);
+        if (!slope) slope = slopeToOneSide(line);
         if (!slope)
           if (const auto byNormal = normals.at(x, y, static_cast<double>(gbuffer.viewZ.at(x, y))))
             slope = (*byNormal)[axis];

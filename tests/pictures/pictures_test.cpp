@@ -29,15 +29,21 @@ TEST(Pictures, ThoseThatWereWrongAreRight) {
   const std::string folder = freshFolder("pictures-mended");
   const auto kept = std::make_shared<KeptWork>(-1);
   for (const Trial& trial : {
-           Trial{"contact", 21221},   // a pane shone through a wall along the plane of the floor before it
-           Trial{"shapes", 22263},    // the same beside a corner
-           Trial{"contact", 100651},  // surfaces met in the middle of a pixel, which was taken for either
-           Trial{"glass", 102509},    // at the border of the picture a pixel took the slope of what it meets
-           Trial{"glass", 102869},    // a pixel that shows a third surface lent its colour to an edge of two
-           Trial{"glass", 101319},    // a whole pixel was taken apart by colours continued from another face
-           Trial{"shapes", 101603},   // the same
-           Trial{"contact", 103261},  // past a surface that parallel rays meet behind the eye everything was seen
-           Trial{"decals", 103790},   // a decal on a floor that parallel rays see up to the eye's plane
+           Trial{"contact", 21221},      // a pane shone through a wall along the plane of the floor before it
+           Trial{"shapes", 22263},       // the same beside a corner
+           Trial{"contact", 100651},     // surfaces met in the middle of a pixel, which was taken for either
+           Trial{"glass", 102509},       // at the border of the picture a pixel took the slope of what it meets
+           Trial{"glass", 102869},       // a pixel that shows a third surface lent its colour to an edge of two
+           Trial{"glass", 101319},       // a whole pixel was taken apart by colours continued from another face
+           Trial{"shapes", 101603},      // the same
+           Trial{"contact", 103261},     // past a surface that parallel rays meet behind the eye everything was seen
+           Trial{"decals", 103790},      // a decal on a floor that parallel rays see up to the eye's plane
+           Trial{"refracting", 160508},  // what is straight behind glass was taken to stand before it
+           Trial{"lamps", 160132},       // bent rays showed the mixed colour of an edge
+           Trial{"air", 600101},         // beyond a ridge the nearer plane was seen
+           Trial{"lamps", 902315},       // a whole pixel was taken apart beside one that a ridge mixes
+           Trial{"lamps", 902601},       // a pixel at a surface's edge took the slope of a curve beside it
+           Trial{"shapes", 902398},      // the same at the border of the picture
        })
     expectRight(trial, runTrial(trial, folder, kept), folder);
 }

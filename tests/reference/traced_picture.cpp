@@ -93,8 +93,12 @@ double Picture::texelsAPixel(double x, double y) const {
         return placeOf(mesh, triangle, sharesOf(rayThrough(scene_.eye, u, v), corners)) *
                Vec2(texels.width, texels.height);
       };
-      for (const Vec2 half : {Vec2(0.5, 0.0), Vec2(0.0, 0.5)})
-        most = std::max(most, glm::length(placeAt(x + half.x, y + half.y) - placeAt(x - half.x, y - half.y)));
+      // Devices tell it by differences in the two by two pixels of which this is one.
+      for (const double aside : {-1.0, 0.0, 1.0})
+        for (const double first : {-1.0, 0.0}) {
+          most = std::max(most, glm::length(placeAt(x + first + 1.0, y + aside) - placeAt(x + first, y + aside)));
+          most = std::max(most, glm::length(placeAt(x + aside, y + first + 1.0) - placeAt(x + aside, y + first)));
+        }
     });
   }
   return most;
