@@ -157,6 +157,25 @@ TEST_F(DeepPicture, GlassRefractsAndDiffusesBetweenItsSamples) {
   EXPECT_GT(difference("off.exr", "over.exr"), .1);
 }
 
+// They were one layer, before a sample or behind it.
+TEST_F(DeepPicture, LayersOfLowResolutionStandBetweenItsSamples) {
+  std::vector<Quad> sheets;
+  for (int k = 0; k < 4; ++k) {
+    const float z = 3.0f + 2.0f * static_cast<float>(k);
+    sheets.push_back({{-2 * z, -2 * z, -z}, {4 * z, 0, 0}, {0, 4 * z, 0}, unlit(.9f, .1f * z, .2f, .3f)});
+  }
+  writeGlb(folder + "/sheets.glb", sheets);
+  for (const std::string passes : {"1", "4"}) {
+    std::vector<std::string> low{"composite", "opaque.exr", "sheets.glb", "-o", "full.exr", "--aa", passes};
+    run(low);
+    low[4] = "low.exr";
+    for (int k = 0; k < 4; ++k)
+      low.insert(low.end(), {"--set", "material_" + std::to_string(k) + ".lowResolution=true"});
+    run(low);
+    EXPECT_LE(difference("low.exr", "full.exr"), 3e-6) << passes;
+  }
+}
+
 TEST_F(DeepPicture, WhatCannotTakeItSaysSo) {
   writeGlb(folder + "/pane.glb", {Quad{}});
   EXPECT_NE(run({"accumulate", "opaque.exr", "pane.glb", "-o", "out.exr", "--occlusion", "apart"}, 4)
