@@ -373,6 +373,7 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   const WorkingSpace colours(request.colour, request.scene.assetRoot);
   SceneOptions options = request.scene;
   options.animations = request.time.animations;
+  options.textured = Textured::transparent;
   if (traced) options.streamBytes = 0;
   ShotOrigin origin = originOf(request, shot->geometry, options);
   const bool keepsPicture = !shot->opaque.document.parts.empty() && origin.samePicture(shot->origin);
