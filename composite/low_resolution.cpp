@@ -312,6 +312,7 @@ std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const Fragm
       depths.clear();
       for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
         if (takesPart(lists.fragments[i], lists.solid[pixel])) depths.push_back(lists.fragments[i].z);
+      runs_->addCuts(at->x, at->y, depths);
       if (depths.empty()) continue;
       std::sort(depths.begin(), depths.end());
       depths.erase(std::unique(depths.begin(), depths.end()), depths.end());

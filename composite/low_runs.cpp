@@ -1,14 +1,19 @@
 #include "composite/low_runs.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
+#include "composite/deep/deep_opaque.h"
 #include "composite/fold.h"
 
 namespace pellucid {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
+constexpr std::size_t kMostCuts = 16;  // in fog; what is nearer together than all of these gaps is one layer in it
 
 double meanOf(const glm::dvec3& value) {
   return (value.x + value.y + value.z) / 3.0;
@@ -46,9 +51,10 @@ struct LowRuns::Run {
   double shown = 0.0, depth = 0.0;
 };
 
-LowRuns::LowRuns(const LowView& view, glm::dvec2 sample)
+LowRuns::LowRuns(const LowView& view, glm::dvec2 sample, const LowBetween& others)
     : view_(view),
       sample_(sample),
+      others_(others),
       layers_(view.gbuffer.viewZ.width(), view.gbuffer.viewZ.height()),
       texels_(layers_.width(), layers_.height()),
       shares_(view_, sample) {}
@@ -98,6 +104,38 @@ void LowRuns::addTexel(const LowSurface::Pixel& pixel, int i, int j, double shar
     }
     runs[k].after += share * passed;
   }
+}
+
+void LowRuns::addCuts(int x, int y, std::vector<float>& depths) const {
+  bool thick = others_.fog;
+  if (const DeepOpaque* deep = others_.deep) {
+    const std::size_t pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(deep->data.width()) + static_cast<std::size_t>(x);
+    for (std::uint64_t k = deep->offsets[pixel]; k < deep->offsets[pixel + 1]; ++k) {
+      depths.push_back(deep->samples[k].z);
+      thick = thick || deep->samples[k].reach > 0.0f;
+    }
+  }
+  if (thick) addGaps(x, y, depths);
+}
+
+// The middles of the widest gaps between the layers of the texel that counts most.
+void LowRuns::addGaps(int x, int y, std::vector<float>& depths) const {
+  const std::vector<TexelLayer>* nearest = nullptr;
+  float largest = 0.0f;
+  shares_.around(x, y, [&](int i, int j, float share) {
+    if (share > largest) nearest = &layers_.at(i, j);
+    largest = std::max(largest, share);
+  });
+  if (!nearest) return;
+  std::vector<std::pair<float, float>> gaps;  // how wide, and its middle
+  for (std::size_t k = 1; k < nearest->size(); ++k) {
+    const float from = (*nearest)[k - 1].z, to = (*nearest)[k].z;
+    if (to > from) gaps.emplace_back(to - from, 0.5f * from + 0.5f * to);
+  }
+  const std::size_t kept = std::min(gaps.size(), kMostCuts);
+  std::partial_sort(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(kept), gaps.end(), std::greater<>());
+  for (std::size_t k = 0; k < kept; ++k) depths.push_back(gaps[k].second);
 }
 
 void LowRuns::between(int x, int y, std::span<const float> depths, std::uint32_t identity,

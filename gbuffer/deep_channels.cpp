@@ -106,6 +106,7 @@ DeepChannels resolveDeep(const ExrDocument& document, const std::string& view) {
   channels.part = deepPart(document, view, channels.note);
   const ExrPart& part = document.parts[static_cast<std::size_t>(channels.part)];
   channels.chromaticities = chromaticitiesOf(part);
+  channels.latLong = part.attributes.contains("envmap");  // of a cube map readExr() has said so
   const std::string sharedView = viewInPart(document, view, channels.note);
   std::vector<NamedChannel> named = nameChannels(document);
   std::erase_if(named, [&](const NamedChannel& channel) { return channel.part != channels.part; });
@@ -145,6 +146,12 @@ DeepChannels resolveDeep(const ExrDocument& document, const std::string& view) {
 
 DeepChannels resolveDeep(const std::string& path, const std::string& view) {
   return resolveDeep(readExr(path), view);
+}
+
+void expectCameraPicture(const DeepChannels& channels, const std::string& path) {
+  if (channels.latLong)
+    throw MeaningError(
+        fmt::format("{}: attribute envmap: found a lat-long map, expected a picture that a camera has taken", path));
 }
 
 }  // namespace pellucid

@@ -20,6 +20,7 @@ struct DeepChannels {
   std::array<int, 3> transmission{-1, -1, -1};
   std::array<int, 2> offset{-1, -1};
   std::optional<Chromaticities> chromaticities;  // as the part states them
+  bool latLong = false;                          // its pixels are directions all around, which flatten may have
   std::string note;                              // which of several deep parts or views is taken, "" where there is one
   bool hasRecord() const { return coverage >= 0; }
 };
@@ -29,5 +30,8 @@ struct DeepChannels {
 DeepChannels resolveDeep(const ExrDocument& document, const std::string& view = "");
 // The same of a file. Throws InputError when it cannot be read.
 DeepChannels resolveDeep(const std::string& path, const std::string& view = "");
+
+// Throws MeaningError for a lat-long map, which has no place among what a camera sees.
+void expectCameraPicture(const DeepChannels& channels, const std::string& path);
 
 }  // namespace pellucid

@@ -10,6 +10,7 @@
 #include "gbuffer/channels.h"
 #include "gbuffer/deep_channels.h"
 #include "gbuffer/deep_io.h"
+#include "gbuffer/depth_kind.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/part_camera.h"
 #include "gbuffer/side_files.h"
@@ -120,6 +121,7 @@ json cameraReport(const OpaqueFile& file, bool verify) {
 // A picture of deep samples: what its channels are taken for, and how many samples there are.
 json deepJson(const ExrDocument& document, const ReadOptions& options, std::vector<std::string>& notes) {
   const DeepChannels channels = resolveDeep(document, options.view);
+  expectCameraPicture(channels, document.path);
   if (!channels.note.empty()) notes.push_back(channels.note);
   const auto named = [&](int index) {
     return index < 0 ? json() : json(printable(channels.names[static_cast<std::size_t>(index)]));
@@ -143,7 +145,9 @@ json deepJson(const ExrDocument& document, const ReadOptions& options, std::vect
   }
   json depth{{"channel", named(channels.z)},
              {"back", named(channels.zBack)},
-             {"kind", options.depthKind.empty() ? "planar" : options.depthKind},
+             {"kind", !options.depthKind.empty()           ? options.depthKind
+                      : nearest < 0.0f && farthest <= 0.0f ? depthKindText({DepthMeaning::negative})
+                                                           : "planar"},
              {"metresPerUnit", numberJson(options.metresPerUnit.value_or(1.0))}};
   if (nearest <= farthest) depth["least"] = nearest, depth["most"] = farthest;
   json report{{"deep",

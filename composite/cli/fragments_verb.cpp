@@ -35,7 +35,8 @@ DeepHeader headerOf(const Shot& shot, const FrameRun& frame) {
 
 void fragmentsVerb(const FragmentsFlags& flags, const FrameRun& frame, const std::shared_ptr<KeptWork>& kept) {
   const Threads threads(flags.run.threads);
-  const Request request = flags.render.request();
+  Request request = flags.render.request();
+  request.paint = PaintSorted{};  // lists are not weighed, so no weight is fitted to them
   Compositor compositor(
       request, [](const std::string& note) { say(note); }, frame.watcher(), kept);
   const Shot& shot = compositor.shot();

@@ -52,6 +52,7 @@ RenderedPart renderPart(const GbufferFlags& flags, bool fits, Stages& stages, co
   options.lumensPerWatt = flags.lumensPerWatt;
   options.overrides = flags.overrides;
   options.assetRoot = flags.assetRoot;
+  options.textured = Textured::opaque;
   const std::optional<ShotMoment> moment = playAnimations(flags.time.time(), options);
   checkBlur(flags, moment);
   part.space = spaceToRender(flags);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "composite/cli/over_frames.h"
 #include "composite/cli/results.h"
@@ -34,8 +35,11 @@ void study(const StudyFlags& flags, FrameRun& frame, const std::shared_ptr<KeptW
   const auto watch = [&, tell = frame.watcher()](const std::string& stage, double share) {
     tell(stage, before + part * share);
   };
-  Compositor compositor(
-      base, [](const std::string& note) { say(note); }, watch, kept);
+  std::set<std::string> said;  // rows have notes in common
+  const auto sayOnce = [&said](const std::string& note) {
+    if (said.insert(note).second) say(note);
+  };
+  Compositor compositor(base, sayOnce, watch, kept);
   makeFolder(flags.folder);
   const auto begins = [&](std::size_t done, std::size_t all) {
     part = 1.0 / static_cast<double>(all);

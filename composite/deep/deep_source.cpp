@@ -47,6 +47,7 @@ DeepSource::DeepSource(const std::string& path, const DepthConverter& depth, con
       index_(index),
       channels_(resolveDeep(path, view)),
       reader_(path, channels_.part, channels_.names) {
+  expectCameraPicture(channels_, path);
   // `fragments` wrote it: it says itself how it is read, whatever the picture's depth means.
   if (channels_.hasRecord()) depth_ = depth.planar();
   if (reader_.display() != shot.display)

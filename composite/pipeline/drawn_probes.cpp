@@ -132,7 +132,7 @@ DrawnProbes::Pass DrawnProbes::passOf(const Gathered& from) {
   const Fog* fog = pass.sample.fog.get();
   if (fog && ofSums())
     pass.fog.emplace(*fog, gbuffer, pass.sample.sample, grid_.places(), pass.drawn.solid);
-  else if (fog)
+  else if (fog && !hasLow())
     pass.drawn = withFog(*fog, gbuffer, pass.sample.sample, pass.drawn, grid_.places());
   if (hasLow() && ofSums()) listLow(pass);
   return pass;
@@ -175,13 +175,13 @@ OitPlanes DrawnProbes::lowSumsOf(const Pass& pass, const PassSettings& sample) c
 
 std::vector<glm::dvec3> DrawnProbes::truthOf(const Gathered& from, const Pass& pass) const {
   FragmentLists lists = from.split ? from.split->finish() : pass.drawn;
-  if (pass.sample.fog)
-    lists = withFog(*pass.sample.fog, *context_.picture.gbuffer, pass.sample.sample, lists, grid_.places());
   if (hasLow()) {
     PassStatistics unused;
     TexelMixer sorted(std::nullopt);
     lists = lowLayersOf(context_, pass.sample, pass.number, sorted, unused).among(lists, grid_.places());
   }
+  if (pass.sample.fog)
+    lists = withFog(*pass.sample.fog, *context_.picture.gbuffer, pass.sample.sample, lists, grid_.places());
   Veil veil(lists.window.width(), lists.window.height());
   compositeSorted(lists, lists.window, veil);
   return shown(veil);
@@ -211,6 +211,8 @@ Veil DrawnProbes::veilOfLists(const Pass& pass, const PassSettings& sample) {
     PassStatistics unused;
     TexelMixer mixer(method);
     lists = lowLayersOf(context_, sample, pass.number, mixer, unused).among(pass.drawn, grid_.places());
+    if (sample.fog)  // cut by them, too
+      lists = withFog(*sample.fog, *context_.picture.gbuffer, sample.sample, lists, grid_.places());
   }
   const FragmentLists& mixed = hasLow() ? lists : pass.drawn;
   Veil veil(mixed.window.width(), mixed.window.height());

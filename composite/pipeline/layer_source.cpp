@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "composite/low_resolution.h"
+
 namespace pellucid {
 namespace {
 
@@ -19,8 +21,16 @@ FragmentLists emptyLists(const Window& window) {
 
 void LayerSources::each(const SourceView& view, const ListSink& sink) const {
   ListSink chain = sink;
-  for (auto source = joined_.rbegin(); source != joined_.rend(); ++source)
+  const LowResolutionFragments* low = view.low;
+  const auto joinLow = [&] {
+    if (low) chain = [low, next = std::move(chain)](const FragmentLists& lists) { next(low->among(lists)); };
+    low = nullptr;
+  };
+  for (auto source = joined_.rbegin(); source != joined_.rend(); ++source) {
+    if (!(*source)->runsBetween()) joinLow();
     chain = (*source)->into(view, std::move(chain));
+  }
+  joinLow();
   const Window& data = view.picture.gbuffer->data;
   if (!pass_) {
     chain(emptyLists(data));

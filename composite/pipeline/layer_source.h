@@ -12,6 +12,8 @@
 
 namespace pellucid {
 
+class LowResolutionFragments;
+
 // Takes lists of windows that together cover the data window, from the top.
 using ListSink = std::function<void(const FragmentLists&)>;
 
@@ -20,6 +22,8 @@ struct SourceView {
   const PassSettings& settings;
   LitPicture picture;
   VolumeRule rule = VolumeRule::midDepth;  // how what has a thickness becomes fragments
+  // Layers of low resolution, which join behind deep files and cut the fog; null where there are none.
+  const LowResolutionFragments* low = nullptr;
 };
 
 class LayerSource {
@@ -28,8 +32,9 @@ class LayerSource {
   virtual const char* name() const = 0;
   // Lists that are handed to the result reach `next` with this source's layers among them.
   virtual ListSink into(const SourceView& view, ListSink next) = 0;
-  virtual bool mayScatter() const { return false; }  // its layers may refract or diffuse
-  virtual bool wantsRows() const { return false; }   // lists must be as wide as the picture
+  virtual bool mayScatter() const { return false; }   // its layers may refract or diffuse
+  virtual bool wantsRows() const { return false; }    // lists must be as wide as the picture
+  virtual bool runsBetween() const { return false; }  // its layers fill what all others leave: it joins behind them
 };
 
 std::unique_ptr<LayerSource> deepFiles(std::span<const std::unique_ptr<DeepSource>> files);

@@ -56,7 +56,9 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
   Veil veil(texels.width(), texels.height());
   Image<float> meanZ(texels.width(), texels.height(), 0.0f);
   OitPlanes scatter = emptyPlanes(texels, texels);
-  const std::shared_ptr<LowRuns> runs = mixer.cutsTexels() ? std::make_shared<LowRuns>(view, sample.sample) : nullptr;
+  const LowBetween others{sample.fog != nullptr, context.picture.deepOpaque};
+  const std::shared_ptr<LowRuns> runs =
+      mixer.cutsTexels() ? std::make_shared<LowRuns>(view, sample.sample, others) : nullptr;
   {
     const DrawnOver over(triangles, view, gbuffer, context.shot.camera);
     triangles.fragments(part, [&](const FragmentLists& given) {

@@ -86,6 +86,7 @@ OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const
   file.document = std::move(document);
   file.metresPerUnit = options.metresPerUnit.value_or(1.0);
   const DeepChannels channels = resolveDeep(file.document, options.view);
+  expectCameraPicture(channels, file.document.path);
   const ExrPart& part = file.document.parts[static_cast<std::size_t>(channels.part)];
   file.choice.beautyPart = file.choice.depthPart = channels.part;
   file.choice.depthChannel = channels.names[static_cast<std::size_t>(channels.z)];
@@ -372,6 +373,7 @@ std::unique_ptr<Shot> loadShot(const ShotRequest& request, bool traced, Journal&
   const WorkingSpace colours(request.colour, request.scene.assetRoot);
   SceneOptions options = request.scene;
   options.animations = request.time.animations;
+  options.textured = Textured::transparent;
   if (traced) options.streamBytes = 0;
   ShotOrigin origin = originOf(request, shot->geometry, options);
   const bool keepsPicture = !shot->opaque.document.parts.empty() && origin.samePicture(shot->origin);

@@ -65,12 +65,10 @@ OitPlanes foldedSums(const PaintContext& context, const PassSettings& sample) {
   std::optional<LowResolutionFragments> low;
   PassStatistics texels;
   if (counts && context.plan.lowResolution > 1) low.emplace(countedTexels(context, sample, texels));
-  context.sources.each({part, context.picture, VolumeRule::midDepth}, [&](const FragmentLists& lists) {
+  const SourceView view{part, context.picture, VolumeRule::midDepth, low ? &*low : nullptr};
+  context.sources.each(view, [&](const FragmentLists& lists) {
     if (!pass) context.counts.fragments += lists.fragments.size();
-    if (low)
-      foldInto(context.plan, low->among(lists), part, planes, clamps);
-    else
-      foldInto(context.plan, lists, part, planes, clamps);
+    foldInto(context.plan, lists, part, planes, clamps);
   });
   PassStatistics statistics = pass ? pass->statistics() : PassStatistics();
   if (low) countLow(texels, context.plan.lowResolution, statistics);

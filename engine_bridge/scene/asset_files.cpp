@@ -20,6 +20,17 @@ bool lies(const fs::path& path, const fs::path& under) {
   return std::mismatch(under.begin(), under.end(), path.begin(), path.end()).first == under.end();
 }
 
+// Backslashes and their escapes as slashes.
+std::string withSlashes(const std::string& name) {
+  std::string result;
+  for (std::size_t at = 0; at < name.size(); ++at) {
+    const bool escaped = name.compare(at, 3, "%5C") == 0 || name.compare(at, 3, "%5c") == 0;
+    result.push_back(escaped || name[at] == '\\' ? '/' : name[at]);
+    if (escaped) at += 2;
+  }
+  return result;
+}
+
 // In the order in which they are tried, each once.
 std::vector<std::string> spellings(const std::string& uri) {
   std::vector<std::string> names;
@@ -28,9 +39,7 @@ std::vector<std::string> spellings(const std::string& uri) {
   };
   for (const std::string& name : {decodePercent(uri), uri}) {
     add(name);
-    std::string slashes = name;
-    std::replace(slashes.begin(), slashes.end(), '\\', '/');
-    add(slashes);
+    add(withSlashes(name));
   }
   return names;
 }

@@ -12,10 +12,7 @@ namespace {
 bool writesNoVolumes(const GltfFile& file) {
   const std::optional<JsonView> asset = file.root().find("asset");
   if (!asset || asset->string("generator", "").find("Blender I/O") == std::string::npos) return false;
-  const std::optional<JsonView> used = file.root().find("extensionsUsed");
-  for (std::size_t i = 0; used && i < used->size(); ++i)
-    if (used->at(i).string() == "KHR_materials_volume") return false;
-  return true;
+  return !file.uses("KHR_materials_volume");
 }
 
 bool isThinGlass(const Material& material) {

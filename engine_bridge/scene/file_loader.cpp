@@ -90,6 +90,14 @@ std::optional<JsonView> FileLoader::meshOf(const PlacedNode& node) const {
   return file_.item("meshes", *reference).at("primitives");
 }
 
+// What a material is seen by does not depend on its textures; an animation may change it later.
+bool FileLoader::wantsTextures(std::size_t material) {
+  if (options_.textured == Textured::all || (again_ && file_.uses("KHR_animation_pointer"))) return true;
+  Material plain = readMaterial(file_, material, options_.metresPerUnit, false, textures_, notes_);
+  applyOverrides(options_.overrides, plain);
+  return plain.transparent() == (options_.textured == Textured::transparent);
+}
+
 void FileLoader::readMaterials(const std::vector<PlacedNode>& nodes) {
   const std::size_t count = file_.count("materials");
   std::vector<bool> used(count, false);
@@ -104,8 +112,10 @@ void FileLoader::readMaterials(const std::vector<PlacedNode>& nodes) {
     }
   }
   firstMaterial_ = scene_.materials.size();
-  for (std::size_t i = 0; i < count; ++i)
-    scene_.materials.push_back(readMaterial(file_, i, options_.metresPerUnit, used[i], textures_, notes_));
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool textured = used[i] && wantsTextures(i);
+    scene_.materials.push_back(readMaterial(file_, i, options_.metresPerUnit, textured, textures_, notes_));
+  }
   // The materials of the files behind this one must keep their numbers, whichever pose first needs it.
   default_ = -1;
   if (!again_) return;

@@ -49,6 +49,7 @@ class FileLoader {
 
   std::optional<JsonView> meshOf(const PlacedNode& node) const;
   void readMaterials(const std::vector<PlacedNode>& nodes);
+  bool wantsTextures(std::size_t material);
   int materialOf(const JsonView& primitive);
   bool bumpy(const JsonView& primitive) const;
   int primitiveOf(const Drawn& drawn, std::size_t index, const JsonView& source, bool mirrored);

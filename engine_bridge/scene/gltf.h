@@ -9,12 +9,17 @@
 
 namespace pellucid {
 
+// Which materials' textures are read. What is drawn of a file may do without those of the others, which may then be
+// missing or in a format that is not read.
+enum class Textured { all, transparent, opaque };
+
 struct SceneOptions {
   double metresPerUnit = 1.0;          // --unit
   double lumensPerWatt = 683.0;        // --lumens-per-watt: glTF lights are photometric, renders are not
   std::vector<std::string> overrides;  // --set MATERIAL.key=value
   // --thin auto: where a file's exporter writes no volumes, closed meshes of glass are solid. closed_glass.h
   bool closedGlass = false;
+  Textured textured = Textured::all;
   std::string assetRoot;  // --asset-root: files may lie here besides under their scene's folder
   // Not 0: triangles stay in their files until they are drawn, which only the transparent GL pass can do, and about so
   // many bytes of the files are in memory at once.

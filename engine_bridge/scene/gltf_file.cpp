@@ -114,6 +114,13 @@ void GltfFile::parseJson(Bytes text) {
   }
 }
 
+bool GltfFile::uses(const char* extension) const {
+  const std::optional<JsonView> used = root().find("extensionsUsed");
+  for (std::size_t i = 0; used && i < used->size(); ++i)
+    if (used->at(i).string() == extension) return true;
+  return false;
+}
+
 std::size_t GltfFile::count(const char* array) const {
   const std::optional<JsonView> all = root().find(array);
   return all ? all->size() : 0;

@@ -25,6 +25,9 @@ class GltfFile {
   const std::string& path() const { return path_; }
   JsonView root() const { return JsonView(json_, path_, ""); }
 
+  // Whether extensionsUsed names it.
+  bool uses(const char* extension) const;
+
   // Top-level arrays ("nodes", "meshes"); 0 elements when absent.
   std::size_t count(const char* array) const;
   JsonView item(const char* array, std::size_t index) const;

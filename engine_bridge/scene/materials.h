@@ -17,7 +17,7 @@ enum class Support {
 };
 Support supportFor(const std::string& extension);
 
-//   used  whether something drawn has this material: only then are its images decoded
+//   used  whether its textures show in something that is drawn: only then are its images decoded
 // Throws InputError (damaged or missing image, value of a wrong kind), MeaningError (a texture we cannot address).
 Material readMaterial(const GltfFile& file, std::size_t index, double metresPerUnit, bool used, TextureReader& textures,
                       Notes& notes);
@@ -28,5 +28,8 @@ Material defaultMaterial();
 // Applies "MATERIAL.key=value" to every material of that name, in the order given.
 // Throws UsageError naming the materials, the keys or the values there are.
 void applyOverrides(const std::vector<std::string>& overrides, std::vector<Material>& materials);
+
+// The same for one material, which none of them may name.
+void applyOverrides(const std::vector<std::string>& overrides, Material& material);
 
 }  // namespace pellucid::gltf

@@ -15,7 +15,7 @@ namespace {
 constexpr double kRoundedRow = 1e-5;     // what products of float matrices leave in a last row of 0 0 0 1
 constexpr double kMostMagnitude = 1e15;  // metres and scales beyond it leave no room for float products
 
-glm::dmat4 localMatrix(const JsonView& node) {
+glm::dmat4 localMatrix(const JsonView& node, Notes& notes) {
   if (const std::optional<JsonView> matrix = node.find("matrix")) {
     const std::vector<double> m = matrix->numbers(16);
     const double off = std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1.0)});
@@ -30,8 +30,11 @@ glm::dmat4 localMatrix(const JsonView& node) {
     const std::vector<double> q = rotation->numbers(4);
     const glm::dquat quaternion(q[3], q[0], q[1], q[2]);  // glTF: x y z w
     const double length = glm::length(quaternion);
-    if (!std::isfinite(length) || length < 1e-30) rotation->refuse("has no length; expected a unit quaternion");
-    local = glm::mat4_cast(quaternion / length);
+    const bool none = length == 0.0;  // what exporters make of a scale of zero; every viewer turns nothing by it
+    if (none) notes.add(rotation->where() + " is 0 0 0 0 and turns nothing");
+    if (!none && !(std::isfinite(length) && length >= 1e-30))
+      rotation->refuse("has no length; expected a unit quaternion");
+    if (!none) local = glm::mat4_cast(quaternion / length);
   }
   if (const std::optional<JsonView> scale = node.find("scale")) {
     const std::vector<double> s = scale->numbers(3);
@@ -114,7 +117,7 @@ std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, N
     result.index = next.index;
     result.name = node.string("name", "");
     if (result.name.empty()) result.name = fmt::format("node {}", next.index);
-    result.worldFromObject = next.worldFromParent * localMatrix(node);
+    result.worldFromObject = next.worldFromParent * localMatrix(node, notes);
     checkMagnitude(node, result.worldFromObject);
     const std::optional<JsonView> visibility = node.extension("KHR_node_visibility");
     result.visible = next.visible && (!visibility || visibility->boolean("visible", true));

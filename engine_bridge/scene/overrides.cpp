@@ -54,6 +54,11 @@ void checkOverrides(const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) put(takeApart(text), text, none);
 }
 
+void applyOverrides(const std::vector<std::string>& overrides, Material& material) {
+  for (const std::string& text : overrides)
+    if (const Override each = takeApart(text); each.material == material.name) put(each, text, material);
+}
+
 void applyOverrides(const std::vector<std::string>& overrides, std::vector<Material>& materials) {
   for (const std::string& text : overrides) {
     const Override each = takeApart(text);

@@ -23,11 +23,7 @@ Elements* copied(std::shared_ptr<const Elements>& from) {
 }  // namespace
 
 PrimitiveReader::PrimitiveReader(GltfFile& file, Notes& notes, bool stream)
-    : file_(&file), notes_(&notes), stream_(stream) {
-  const std::optional<JsonView> used = file.root().find("extensionsUsed");
-  for (std::size_t i = 0; used && i < used->size(); ++i)
-    quantised_ = quantised_ || used->at(i).string() == "KHR_mesh_quantization";
-}
+    : file_(&file), notes_(&notes), stream_(stream), quantised_(file.uses("KHR_mesh_quantization")) {}
 
 PrimitiveReader::Shared PrimitiveReader::attribute(const JsonView& attributes, const char* name,
                                                    std::initializer_list<std::size_t> widths, Integers integers,

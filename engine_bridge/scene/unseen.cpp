@@ -59,7 +59,7 @@ float farthestDepth(const GBuffer& gbuffer) {
 }  // namespace
 
 std::string whyNothingShows(const Scene& scene, const Camera& camera, const GBuffer& gbuffer) {
-  if (scene.instances.empty()) return "it holds no mesh";
+  if (scene.instances.empty()) return "it holds no mesh that is drawn";
   std::size_t corners = 0;
   const Reach reach = reachOf(scene, camera, gbuffer, corners);
   if (corners == 0)

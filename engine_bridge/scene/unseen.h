@@ -9,7 +9,7 @@ namespace pellucid {
 
 // To be asked where nothing was drawn: reads every transparent triangle. What holds of all of them is told, with the
 // flag that may be wrong: there are none, they lie behind the eye, beside the picture, or behind what it shows. A
-// clause without an end, such as "it holds no mesh".
+// clause without an end, such as "it holds no mesh that is drawn".
 std::string whyNothingShows(const Scene& scene, const Camera& camera, const GBuffer& gbuffer);
 
 }  // namespace pellucid

@@ -42,8 +42,9 @@ class NothingDrawn : public ::testing::Test {
       arguments.insert(arguments.end(), verb.begin() + 1, verb.end());
       const Ended ended = run(arguments);
       EXPECT_EQ(ended.code, 0) << ended.err;
-      EXPECT_NE(ended.err.find("scene.glb: nothing of it shows in the picture: "), std::string::npos)
-          << verb[0] << ": " << ended.err;
+      const std::string said = "scene.glb: nothing of it shows in the picture: ";
+      EXPECT_NE(ended.err.find(said), std::string::npos) << verb[0] << ": " << ended.err;
+      EXPECT_EQ(ended.err.find(said), ended.err.rfind(said)) << verb[0] << " says it twice: " << ended.err;
       EXPECT_NE(ended.err.find(why), std::string::npos) << verb[0] << ": " << ended.err;
     }
     EXPECT_EQ(run({"compare", "opaque.exr", "out.exr", "--metadata", "ignore"}).code, 0);
@@ -55,7 +56,7 @@ TEST_F(NothingDrawn, AllOpaque) {
   expectSaid({pane(-3, "OPAQUE")}, "none of the 1 materials that its meshes use is transparent");
 }
 TEST_F(NothingDrawn, NoMesh) {
-  expectSaid({}, "it holds no mesh");
+  expectSaid({}, "it holds no mesh that is drawn");
 }
 TEST_F(NothingDrawn, BehindTheEye) {
   expectSaid({pane(3)}, "behind the eye");

@@ -71,6 +71,44 @@ TEST_F(FogProgram, FragmentsFlattenToOver) {
   for (std::size_t i = 0; i < over.size(); ++i) EXPECT_NEAR(over[i].g, again[i].g, 2e-6f);
 }
 
+// Layers of low resolution cut the fog as those of full resolution do: it lay behind all of them.
+TEST_F(FogProgram, LayersOfLowResolutionStandInIt) {
+  int sheets = 0;
+  const auto write = [&](int count) {  // that fill the view, 2 m away and more
+    sheets = count;
+    std::vector<Quad> quads;
+    for (int k = 0; k < count; ++k) {
+      const float z = 2.0f + static_cast<float>(k);
+      quads.push_back({{-2 * z, -2 * z, -z}, {4 * z, 0, 0}, {0, 4 * z, 0}, unlit(.9f, .2f * z, .1f, .4f)});
+    }
+    writeGlb(folder + "/pane.glb", quads);
+  };
+  const auto differs = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> given{"--fog", "density=0.2"};
+    given.insert(given.end(), flags.begin(), flags.end());
+    EXPECT_EQ(run(given).code, 0);
+    const Image<glm::vec4> full = picture();
+    for (int k = 0; k < sheets; ++k)
+      given.insert(given.end(), {"--set", "material_" + std::to_string(k) + ".lowResolution=true"});
+    EXPECT_EQ(run(given).code, 0);
+    const Image<glm::vec4> low = picture();
+    float worst = 0.0f;
+    for (std::size_t i = 0; i < low.size(); ++i)
+      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(low[i][c] - full[i][c]));
+    return worst;
+  };
+  write(1);
+  for (const char* method : {"over", "weighted", "average", "front+tail", "mlab:4"}) {
+    std::vector<std::string> flags{"--method", method};
+    if (flags[1] == "weighted") flags.insert(flags.end(), {"--weight", "uniform"});
+    EXPECT_LE(differs(flags), 2e-6f) << method;
+  }
+  write(4);
+  EXPECT_LE(differs({}), 2e-6f);
+  EXPECT_LE(differs({"--aa", "4"}), 2e-6f);
+  EXPECT_LE(differs({"--tolerance", "0.001"}), 0.002f);  // of each
+}
+
 TEST_F(FogProgram, JsonIsTheSameAsTheList) {
   ASSERT_EQ(run({"--fog", "density=0.2,albedo=0.9:0.8:0.7,box=-1:-1:-5:1:1:-1,g=-0.3"}).code, 0);
   const Image<glm::vec4> list = picture();

@@ -39,12 +39,14 @@ TEST(AssetFiles, NamesAsExportersWriteThem) {
   fs::create_symlink("sub/b.bin", folders.scene / "link.bin");
   fs::create_directory_symlink("sub", folders.scene / "linked");
   fs::copy_file(folders.scene / "a.bin", folders.scene / "back\\slash.bin");
+  fs::copy_file(folders.scene / "a.bin", folders.scene / "sub" / "escaped%20twice.bin");
   for (const std::string& uri :
        {std::string("a.bin"), std::string("./a.bin"), std::string("sub/b.bin"), std::string("sub\\b.bin"),
         std::string("sub%5Cb.bin"), std::string("sub%2fb.bin"), std::string("sub/../a.bin"), std::string("%61.bin"),
         std::string("name with %41.bin"), std::string("name%20with%20%2541.bin"), std::string("link.bin"),
         std::string("linked/b.bin"), std::string("back\\slash.bin"), (folders.scene / "a.bin").string(),
-        std::string("../scene/a.bin")})
+        std::string("../scene/a.bin"), std::string("sub%5Cescaped%20twice.bin"),
+        std::string("sub\\escaped%20twice.bin")})
     EXPECT_EQ(folders.naming(uri).sentence, "") << uri;
   expectRefusal(folders.naming("sub\\c.bin"), 3, {"buffers[0]", "sub\\c.bin", "does not exist"});
   expectRefusal(folders.naming("HTTP://host/a.bin"), 3, {"HTTP"});

@@ -215,6 +215,20 @@ TEST(Cameras, PerspectiveUsesThePicturesAspect) {
   expectRefusal(refusalOf([&] { cameraOf(source, Window{0, 0, 10, 10}, std::nan("")); }), 4, {"shot"});
 }
 
+// Exporters take a scale of zero apart into it.
+TEST(Nodes, ARotationOfZerosTurnsNothing) {
+  Builder builder;
+  builder.triangle();
+  builder.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
+  builder.json["nodes"][0]["translation"] = {1, 2, 3};
+  const Scene scene = builder.load();
+  const glm::dmat4& placed = scene.instances.at(0).worldFromObject;
+  EXPECT_EQ(glm::dmat3(placed), glm::dmat3(1.0));
+  EXPECT_EQ(placed[3], glm::dvec4(1, 2, 3, 1));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_NE(scene.notes[0].find("nodes[0].rotation is 0 0 0 0"), std::string::npos) << scene.notes[0];
+}
+
 TEST(Cameras, Orthographic) {
   const Json lens = {{"type", "orthographic"},
                      {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 0}, {"zfar", 100}}}};

@@ -415,5 +415,48 @@ TEST(Textures, ImagesOfMaterialsThatNothingDrawsAreNotOpened) {
   EXPECT_EQ(refusalOf(builder).code, 3);
 }
 
+// glTF allows KTX2 and many sets of coordinates; what is not drawn may have them, and images that are gone.
+TEST(Textures, WhatIsNotDrawnNeedsNoTextures) {
+  Builder builder;
+  builder.triangle()["material"] = 0;
+  builder.triangle()["material"] = 1;
+  const Json textured = {{"baseColorTexture", {{"index", 0}}}};
+  builder.json["materials"] = Json::array(
+      {{{"name", "wall"}, {"pbrMetallicRoughness", textured}},
+       {{"name", "glass"}, {"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}}});
+  builder.json["images"] = Json::array({{{"uri", "gone.png"}}});
+  builder.json["textures"] = Json::array({{{"source", 0}}});
+  SceneOptions options;
+  EXPECT_EQ(refusalOf(builder, options).code, 3);
+  options.textured = Textured::transparent;
+  EXPECT_EQ(builder.load(options).instances.size(), 2u);
+  builder.json["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  EXPECT_EQ(builder.load(options).instances.size(), 2u);
+  builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 3;
+  EXPECT_EQ(builder.load(options).instances.size(), 2u);
+
+  options.textured = Textured::opaque;
+  expectRefusal(refusalOf(builder, options), 4, {"material wall", "TEXCOORD_3"});
+  std::swap(builder.json["materials"][0]["pbrMetallicRoughness"], builder.json["materials"][1]["pbrMetallicRoughness"]);
+  EXPECT_EQ(builder.load(options).instances.size(), 2u);
+}
+
+TEST(Textures, WhatBecomesTransparentNeedsItsTextures) {
+  Builder builder;
+  builder.triangle()["material"] = 0;
+  builder.json["materials"] =
+      Json::array({{{"name", "wall"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  builder.json["images"] = Json::array({{{"uri", "gone.png"}}});
+  builder.json["textures"] = Json::array({{{"source", 0}}});
+  SceneOptions options;
+  options.textured = Textured::transparent;
+  EXPECT_EQ(refusalOf(builder, options).code, 0);
+  Builder marked = builder;
+  marked.json["materials"][0]["extras"] = {{"pellucid", {{"coverage", 0.5}}}};
+  expectRefusal(refusalOf(marked, options), 3, {"material wall", "gone.png"});
+  options.overrides = {"wall.coverage=0.5"};
+  expectRefusal(refusalOf(builder, options), 3, {"material wall", "gone.png"});
+}
+
 }  // namespace
 }  // namespace pellucid::test

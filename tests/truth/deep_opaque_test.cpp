@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfDeepTiledOutputFile.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -157,6 +158,25 @@ TEST_F(DeepPicture, GlassRefractsAndDiffusesBetweenItsSamples) {
   EXPECT_GT(difference("off.exr", "over.exr"), .1);
 }
 
+// They were one layer, before a sample or behind it.
+TEST_F(DeepPicture, LayersOfLowResolutionStandBetweenItsSamples) {
+  std::vector<Quad> sheets;
+  for (int k = 0; k < 4; ++k) {
+    const float z = 3.0f + 2.0f * static_cast<float>(k);
+    sheets.push_back({{-2 * z, -2 * z, -z}, {4 * z, 0, 0}, {0, 4 * z, 0}, unlit(.9f, .1f * z, .2f, .3f)});
+  }
+  writeGlb(folder + "/sheets.glb", sheets);
+  for (const std::string passes : {"1", "4"}) {
+    std::vector<std::string> low{"composite", "opaque.exr", "sheets.glb", "-o", "full.exr", "--aa", passes};
+    run(low);
+    low[4] = "low.exr";
+    for (int k = 0; k < 4; ++k)
+      low.insert(low.end(), {"--set", "material_" + std::to_string(k) + ".lowResolution=true"});
+    run(low);
+    EXPECT_LE(difference("low.exr", "full.exr"), 3e-6) << passes;
+  }
+}
+
 TEST_F(DeepPicture, WhatCannotTakeItSaysSo) {
   writeGlb(folder + "/pane.glb", {Quad{}});
   EXPECT_NE(run({"accumulate", "opaque.exr", "pane.glb", "-o", "out.exr", "--occlusion", "apart"}, 4)
@@ -168,12 +188,13 @@ TEST_F(DeepPicture, WhatCannotTakeItSaysSo) {
 }
 
 // The same samples in tiles of 16 x 16 that the windows do not fill.
-void writeTiles(const std::string& path, const DeepRows& rows) {
+void writeTiles(const std::string& path, const DeepRows& rows, bool latLong = false) {
   namespace exr = OPENEXR_IMF_NAMESPACE;
   const int width = rows.window.width(), height = rows.window.height();
   exr::Header header(width, height);
   header.setType(exr::DEEPTILE);
   header.compression() = exr::ZIPS_COMPRESSION;
+  if (latLong) exr::addEnvmap(header, exr::ENVMAP_LATLONG);
   header.setTileDescription(exr::TileDescription(20, 16, exr::ONE_LEVEL));
   std::vector<unsigned> counts;
   std::vector<std::vector<const float*>> pointers(rows.channels.size());
@@ -193,6 +214,22 @@ void writeTiles(const std::string& path, const DeepRows& rows) {
   exr::DeepTiledOutputFile file(path.c_str(), header);
   file.setFrameBuffer(frame);
   file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1);
+}
+
+// Its pixels are directions all around: neither a picture nor layers of what a camera sees. Flattened it stays one.
+TEST_F(DeepPicture, ALatLongMapIsRefused) {
+  Random random(8);
+  writeTiles(folder + "/around.exr", smoke(random), true);
+  writeGlb(folder + "/pane.glb", {Quad{}});
+  for (const std::vector<std::string>& inputs : {std::vector<std::string>{"around.exr", "pane.glb"},
+                                                 {"around.exr", "smoke.exr"},
+                                                 {"opaque.exr", "around.exr"}}) {
+    const Ended ended = run({"composite", inputs[0], inputs[1], "-o", "out.exr"}, 4);
+    EXPECT_NE(ended.err.find("around.exr: attribute envmap: found a lat-long map"), std::string::npos) << ended.err;
+  }
+  EXPECT_NE(run({"inspect", "around.exr"}).out.find("attribute envmap: found a lat-long map"), std::string::npos);
+  run({"flatten", "around.exr", "-o", "flat.exr"});
+  EXPECT_NE(run({"composite", "flat.exr", "pane.glb", "-o", "out.exr"}, 4).err.find("lat-long map"), std::string::npos);
 }
 
 TEST(DeepTiles, HoldTheSameSamples) {

@@ -305,7 +305,8 @@ class DeepVerbs : public ::testing::Test {
 };
 
 TEST_F(DeepVerbs, FragmentsReadBackGiveTheSamePicture) {
-  run({"fragments", "opaque.exr", "glass.glb", "-o", "deep.exr"});
+  const Ended listed = run({"fragments", "opaque.exr", "glass.glb", "-o", "deep.exr"});
+  EXPECT_EQ(listed.err.find("--weight"), std::string::npos) << "lists are not weighed: " << listed.err;
   for (const std::string method : {"over", "phenomenological"}) {
     run({"composite", "opaque.exr", "glass.glb", "-o", "direct.exr", "--aa", "1", "--method", method});
     run({"composite", "opaque.exr", "deep.exr", "-o", "viadeep.exr", "--aa", "1", "--method", method});

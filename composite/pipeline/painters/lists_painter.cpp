@@ -85,13 +85,10 @@ class ListsPainter : public Painter {
   void list(const PassSettings& sample, int pass, Veil& veil) {
     PassSettings listed = fullResolutionPart(context_.plan, sample);
     if (fogBeside(sample)) listed.fog = nullptr;
-    const SourceView view{listed, context_.picture, mixer_->rule()};
+    const SourceView view{listed, context_.picture, mixer_->rule(), low_ ? &*low_ : nullptr};
     const ListSink mixes = [&](const FragmentLists& lists) {
       if (!context_.sources.triangles()) context_.counts.fragments += lists.fragments.size();
-      if (low_)
-        window(sample, pass, low_->among(lists), veil);
-      else
-        window(sample, pass, lists, veil);
+      window(sample, pass, lists, veil);
     };
     context_.sources.each(view, mixes);
   }

@@ -8,6 +8,7 @@ namespace {
 class FogRuns : public LayerSource {
  public:
   const char* name() const override { return "fog"; }
+  bool runsBetween() const override { return true; }
   ListSink into(const SourceView& view, ListSink next) override {
     if (!view.settings.fog) return next;
     return [&fog = *view.settings.fog, &picture = view.picture, sample = view.settings.sample, next = std::move(next)](
