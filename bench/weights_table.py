@@ -4,11 +4,11 @@
   weights_table.py PELLUCID SAMPLES WORKDIR [HEIGHT]
 
 Every sample is composited by the phenomenological sums with each listed weight at 10^-3, 1 and 10^3 times its size, and
-with the fitted one. Weights that read a range get that of the scene's transparent things, as an engine's camera knows
-it, rounded out by a tenth; those with the papers' constants are told by --weight-reference how long a metre of the
-scene has become. A row is the mean error over that of the best listed
-weight on the same sample, size by size, as the geometric mean of all samples, and at worst; and by how much it differs
-between the sizes of a sample at most, which is nothing for what has no length in it.
+with the fitted one. What the flags and the lamps say in metres grows along: how far diffusion spreads, intensities by
+the square, and the unit of weights with the papers' constants (--weight-reference). Weights that read a range get that
+of the scene's transparent things, as an engine's camera knows it, rounded out by a tenth. A row is the mean error over
+that of the best listed weight on the same sample, size by size, as the geometric mean of all samples, and at worst; and
+by how much it differs between the sizes of a sample at most, which is nothing for what has no length in it.
 """
 import json, math, re, struct, subprocess, sys
 from pathlib import Path
@@ -41,7 +41,8 @@ def lit_for(stem, size):
 
 def measured(program, stem, size, flags):
     words = [program, "composite", f"{stem}.exr", f"{stem}-lit.glb", "-o", f"{stem}-out.exr",
-             "--method", "phenomenological", "--measure", "--aa", "1", "--unit", repr(size), "--scene-unit", repr(size), *flags]
+             "--method", "phenomenological", "--measure", "--aa", "1", "--unit", repr(size), "--scene-unit", repr(size),
+             "--diffusion-scale", f"{0.3 * size!r}:{0.5 * size!r}", *flags]
     ended = subprocess.run(words, capture_output=True, text=True)
     if ended.returncode != 0:
         sys.exit(f"{' '.join(words)}: ended with {ended.returncode}: {ended.stderr}")
