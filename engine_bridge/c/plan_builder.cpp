@@ -70,7 +70,8 @@ void PlanBuilder::addImages() {
   if (p_.low()) addLowImages();
   if (p_.has(PLD_FEATURE_DIFFUSION))
     for (const auto& [name, output] : kPyramid)
-      pyramid_.push_back(own(name, PLD_FORMAT_RGBA32F, PartOfFrame::pyramid, kAtlasLayers));
+      pyramid_.push_back(
+          own(name, PLD_FORMAT_RGBA32F, PartOfFrame::pyramid, static_cast<uint32_t>(shape_.atlasLayers)));
 }
 
 void PlanBuilder::addLowImages() {
@@ -111,7 +112,9 @@ void PlanBuilder::readPyramid(PlannedPass& pass, int32_t layer) const {
 
 void PlanBuilder::addPlanarDepth() {
   if (!p_.planarDepth()) return;
-  PlannedPass& pass = addPass("planar depth", PLD_STAGE_LAYERS, "gl/planar_depth.frag", depthDefines(p_.depth, clip_));
+  PlannedPass& pass =
+      addPass("planar depth", firstStageOf(p_), "gl/planar_depth.frag", depthDefines(p_.depth, shape_.clip));
+  pass.moment = Moment::begin;
   read(pass, depth_, 0, "hostDepth");
   attachWhole(pass, planarZ_);
   pass.numbers = {StageNumber::depthRows, StageNumber::metresPerUnit};
@@ -134,6 +137,7 @@ void PlanBuilder::addStage(pld_stage stage, const char* name, const Planes& plan
   const bool low = stage == PLD_STAGE_LOW, solids = stage == PLD_STAGE_SOLIDS;
   PlannedPass& pass = addPass(name, stage, "", {});
   pass.kind = PLD_PASS_DRAWS;
+  pass.moment = Moment::draws;
   pass.part = low ? PartOfFrame::low : PartOfFrame::picture;
   readSeam(pass);
   if (p_.exact()) {
@@ -201,6 +205,7 @@ void PlanBuilder::addLowResolution() {
   std::vector<std::string> noSolids;
   if (solids_.empty()) noSolids.emplace_back("NO_SOLIDS");
   PlannedPass& depth = addPass("farthest depth", PLD_STAGE_LOW, "gl/low_depth.frag", noSolids);
+  depth.moment = Moment::begin;
   depth.part = PartOfFrame::low;
   read(depth, planarZ_, 0, "opaqueZ");
   if (!solids_.empty()) read(depth, solids_[0].image, 1, "solid");
@@ -245,6 +250,7 @@ void PlanBuilder::addLowResolution() {
 void PlanBuilder::addSpread() {
   if (!p_.has(PLD_FEATURE_DIFFUSION)) return;
   PlannedPass& pass = addPass("spread", PLD_STAGE_LAYERS, "gl/spread_level.frag", resolveDefines(p_));
+  pass.moment = Moment::resolve;
   pass.part = PartOfFrame::pyramid;
   read(pass, colour_, kBackgroundUnit, "background");
   read(pass, planarZ_, kOpaqueZUnit, "opaqueZ");
@@ -275,26 +281,62 @@ void PlanBuilder::readResolved(PlannedPass& pass, bool colour, bool nearest) con
   pass.numbers.insert(pass.numbers.end(), {StageNumber::lookup, StageNumber::largestSpread});
   if (pyramid_.empty()) return;
   pass.numbers.push_back(StageNumber::spreadLevels);
-  pass.defines.emplace_back("SPREAD_LAYERS");
+  if (shape_.atlasLayers > 1) pass.defines.emplace_back("SPREAD_LAYERS");
+}
+
+PlannedPass& PlanBuilder::addShown(const char* name, const char* file, int firstView, int lastView) {
+  PlannedPass& pass = addPass(name, PLD_STAGE_LAYERS, file, resolveDefines(p_));
+  pass.moment = Moment::resolve;
+  pass.firstView = firstView;
+  pass.lastView = lastView;
+  return pass;
 }
 
 void PlanBuilder::addPicture() {
-  const std::vector<std::string> defines = resolveDefines(p_);
-  PlannedPass& pass = addPass("picture", PLD_STAGE_LAYERS, "gl/picture.frag", defines);
+  PlannedPass& pass = addShown("picture", "gl/picture.frag", PLD_VIEW_PICTURE, PLD_VIEW_PICTURE);
   readResolved(pass, true, false);
   attachWhole(pass, picture_);
   if (!p_.outputs()) return;
   for (const bool depth : {false, true}) {
-    PlannedPass& output = addPass(depth ? "nearest depth" : "reactive", PLD_STAGE_LAYERS, "gl/outputs.frag", defines);
+    const int view = depth ? PLD_VIEW_NEAREST_DEPTH : PLD_VIEW_REACTIVE;
+    PlannedPass& output = addShown(depth ? "nearest depth" : "reactive", "gl/outputs.frag", view, view);
     readResolved(output, false, true);
     output.numbers.push_back(StageNumber::view);
-    output.view = depth ? PLD_VIEW_NEAREST_DEPTH : PLD_VIEW_REACTIVE;
     attachWhole(output, depth ? nearestDepth_ : reactive_);
   }
 }
 
-RecipePlan recipePlan(const Permutation& permutation, pld_clip clip) {
-  PlanBuilder builder(permutation, clip);
+void PlanBuilder::addDebugViews() {
+  if (!shape_.debugViews) return;
+  PlannedPass& sums = addShown("view", "gl/view.frag", PLD_VIEW_LAYER_COUNT, PLD_VIEW_SOLID);
+  readResolved(sums, true, true);
+  sums.numbers.push_back(StageNumber::view);
+  attachWhole(sums, picture_);
+  if (p_.rimsApart()) {
+    constexpr int openUnit = 14;
+    PlannedPass& rims = addShown("view of rims", "gl/view_rims.frag", PLD_VIEW_RIM_OCCLUSION, PLD_VIEW_RIM_LOSS);
+    // What rims take is looked at where it is, not where it is seen.
+    rims.defines = resolveDefines(p_, false);
+    rims.defines.push_back(rimSamplers());
+    for (const Planes* planes : {&layers_, &rims_})
+      for (const PlacedPlane& plane : *planes) read(rims, plane.image, plane.spec.unit, plane.spec.name);
+    read(rims, planarZ_, kOpaqueZUnit, "opaqueZ");
+    read(rims, occlusion_, openUnit, "opaqueOpen");
+    if (!solids_.empty()) read(rims, solids_[0].image, kSolidUnit, "solid");
+    rims.numbers = {StageNumber::pictureSize, StageNumber::form, StageNumber::view};
+    attachWhole(rims, picture_);
+  }
+  if (p_.low()) {
+    PlannedPass& low = addShown("view of low resolution", "gl/view_low.frag", PLD_VIEW_LOW_COLOUR, PLD_VIEW_LOW_DEPTH);
+    low.defines.clear();
+    for (std::size_t i = 0; i < texels_.size(); ++i) read(low, texels_[i], static_cast<int>(i), kTexels[i]);
+    low.numbers = {StageNumber::view, StageNumber::factor};
+    attachWhole(low, picture_);
+  }
+}
+
+RecipePlan recipePlan(const Permutation& permutation, const PlanShape& shape) {
+  PlanBuilder builder(permutation, shape);
   builder.addImages();
   builder.addPlanarDepth();
   builder.addStages();
@@ -302,6 +344,7 @@ RecipePlan recipePlan(const Permutation& permutation, pld_clip clip) {
   builder.addLowResolution();
   builder.addSpread();
   builder.addPicture();
+  builder.addDebugViews();
   return builder.plan;
 }
 

@@ -9,7 +9,9 @@ namespace pellucid::c {
 
 class PlanBuilder {
  public:
-  PlanBuilder(const Permutation& permutation, pld_clip clip) : p_(permutation), clip_(clip) {}
+  PlanBuilder(const Permutation& permutation, const PlanShape& shape) : p_(permutation), shape_(shape) {
+    plan.atlasLayers = shape.atlasLayers;
+  }
 
   RecipePlan plan;
 
@@ -21,6 +23,7 @@ class PlanBuilder {
   void addLowResolution();
   void addSpread();
   void addPicture();
+  void addDebugViews();
 
  private:
   // A plane and where it is.
@@ -39,6 +42,7 @@ class PlanBuilder {
   PlannedPass& addPass(const char* name, pld_stage stage, const char* file, std::vector<std::string> defines);
   void addStage(pld_stage stage, const char* name, const Planes& planes);
   void addFold(pld_stage stage, const char* name, const Planes& planes);
+  PlannedPass& addShown(const char* name, const char* file, int firstView, int lastView);
   void readSeam(PlannedPass& pass) const;
   void readResolved(PlannedPass& pass, bool colour, bool nearest) const;
   static void attach(PlannedPass& pass, const Planes& planes, pld_load load, bool blends);
@@ -47,7 +51,7 @@ class PlanBuilder {
   void readPyramid(PlannedPass& pass, int32_t layer) const;
 
   const Permutation& p_;
-  pld_clip clip_;
+  const PlanShape shape_;
   uint32_t colour_ = PLD_NO_IMAGE, depth_ = PLD_NO_IMAGE, occlusion_ = PLD_NO_IMAGE, picture_ = PLD_NO_IMAGE,
            reactive_ = PLD_NO_IMAGE, nearestDepth_ = PLD_NO_IMAGE, planarZ_ = PLD_NO_IMAGE, solidDepth_ = PLD_NO_IMAGE,
            farthestZ_ = PLD_NO_IMAGE;
@@ -56,6 +60,6 @@ class PlanBuilder {
 };
 
 // Of a permutation that is not refused.
-RecipePlan recipePlan(const Permutation& permutation, pld_clip clip);
+RecipePlan recipePlan(const Permutation& permutation, const PlanShape& shape);
 
 }  // namespace pellucid::c

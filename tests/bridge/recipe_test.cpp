@@ -15,6 +15,10 @@
 
 #include "tests/bridge/host.h"
 #include "tests/support/recipes.h"
+// After epoxy, which declares the same.
+#include "engine_bridge/c/plan_words.h"
+#include "engine_bridge/c/recipe_plan.h"
+#include "engine_bridge/gl/plane_formats.h"
 
 namespace pellucid::test {
 namespace {
@@ -272,6 +276,27 @@ TEST(BridgeRecipe, LevelsOfThePyramidLieApart) {
     return;
   }
   FAIL() << "no pass of the pyramid";
+}
+
+// Formats and blends go to GL by pld_format and pld_blend in the C library, and straight in the rooms: by the same
+// words.
+TEST(BridgeRecipe, PlanesHaveTheWordsOfTheRooms) {
+  for (int i = 0; i <= static_cast<int>(PlaneFormat::rg8snorm); ++i) {
+    const auto format = static_cast<PlaneFormat>(i);
+    EXPECT_EQ(c::wordOf(c::formatOf(format)), gl::formatOf(format)) << i;
+    EXPECT_EQ(c::bitsOf(c::formatOf(format)), pellucid::bitsOf(format)) << i;
+  }
+  for (int i = 0; i <= static_cast<int>(PlaneBlend::product); ++i) {
+    const gl::BlendWords rooms = gl::blendOf(static_cast<PlaneBlend>(i));
+    const pld_blend blend = c::blendOf(static_cast<PlaneBlend>(i));
+    EXPECT_EQ(blend.enabled, 1);
+    EXPECT_EQ(c::wordOf(blend.source), rooms.source) << i;
+    EXPECT_EQ(c::wordOf(blend.destination), rooms.destination) << i;
+    EXPECT_EQ(c::wordOf(blend.op), rooms.equation) << i;
+    EXPECT_EQ(c::wordOf(blend.alpha_source), static_cast<GLenum>(GL_ONE)) << i;
+    EXPECT_EQ(c::wordOf(blend.alpha_destination), static_cast<GLenum>(GL_ONE)) << i;
+    EXPECT_EQ(c::wordOf(blend.alpha_op), rooms.alphaEquation) << i;
+  }
 }
 
 // The GL pass holds the recipe's seams, and as many bits; its textures are the recipe's images.
