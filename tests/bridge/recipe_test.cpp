@@ -18,6 +18,7 @@
 // After epoxy, which declares the same.
 #include "engine_bridge/c/plan_words.h"
 #include "engine_bridge/c/recipe_plan.h"
+#include "engine_bridge/c/word_template.h"
 #include "engine_bridge/gl/plane_formats.h"
 
 namespace pellucid::test {
@@ -140,13 +141,29 @@ TEST(BridgeRecipe, EightThreadsMakeTheSame) {
     }
     return all;
   };
-  const std::vector<uint64_t> alone = hashes();
-  EXPECT_GT(alone.size(), 25u);
+  // First, so that what recipes share is made by all threads at once.
   std::array<std::vector<uint64_t>, 8> together;
   std::vector<std::thread> threads;
   for (std::vector<uint64_t>& one : together) threads.emplace_back([&one, &hashes] { one = hashes(); });
   for (std::thread& thread : threads) thread.join();
+  const std::vector<uint64_t> alone = hashes();
+  EXPECT_GT(alone.size(), 25u);
   for (const std::vector<uint64_t>& one : together) EXPECT_EQ(one, alone);
+}
+
+TEST(BridgeRecipe, ATextThatIsReadOnceIsWrittenLikeOneThatIsReadEachTime) {
+  const std::string text = "layout(binding = 3) precise float binding;  // a binding\nfloat x = binding * 0x1f;\n";
+  const c::WordTemplate once(text, [](std::string_view word) { return word == "binding" || word == "precise"; });
+  for (const std::string set : {"", "set = 0, ", "set = 12, "}) {
+    const auto change = [&](std::string_view word, std::string& out) {
+      if (word == "binding") out += set;
+      if (word != "precise" || set.empty()) out += word;
+    };
+    std::string written = "before ";
+    once.write(written, change);
+    EXPECT_EQ(written, "before " + c::withWords(text, change));
+    EXPECT_EQ(written.find("12, binding * 0x1f") != std::string::npos, set.size() > 9) << written;
+  }
 }
 
 std::string refusal(const pld_recipe_info& info) {
