@@ -9,7 +9,9 @@
 
 namespace pellucid::c {
 
+// Textures that seams read, in the order of their units.
 constexpr int kMostSeamUnits = 4;
+constexpr const char* kSeamSamplers[kMostSeamUnits] = {"pldOpaqueZ", "pldSolid", "pldFrontZ", "pldOpaqueOpen"};
 
 struct Permutation {
   pld_method method = PLD_METHOD_PHENOMENOLOGICAL;

@@ -8,14 +8,7 @@ namespace pellucid::c {
 namespace {
 
 constexpr int kFarthestUnit = 5;  // of shaders/gl/low_texel.frag
-constexpr uint32_t kColours = 7, kAllComponents = 15;
-
-constexpr std::pair<const char*, const char*> kPyramid[] = {{"spreadColour", "colour"},
-                                                            {"spreadLimits", "limits"},
-                                                            {"spreadMoments", "moments"},
-                                                            {"spreadReachColour", "reachColour"},
-                                                            {"spreadRateColour", "rateColour"}};
-constexpr const char* kTexels[] = {"radianceTexels", "opacityTexels", "depthTexels"};
+constexpr uint32_t kColours = 7;  // of a write mask
 
 // Whether the layers' sums have a plane for it, which shaders/gl/packing.glsl unpacks.
 bool isPacked(PlaneSum sum) {
@@ -69,7 +62,7 @@ void PlanBuilder::addImages() {
   if (p_.rimsApart()) rims_ = addPlanes(pellucid::planesOf(model, PlaneStage::rims));
   if (p_.low()) addLowImages();
   if (p_.has(PLD_FEATURE_DIFFUSION))
-    for (const auto& [name, output] : kPyramid)
+    for (const char* name : kPyramid)
       pyramid_.push_back(
           own(name, PLD_FORMAT_RGBA32F, PartOfFrame::pyramid, static_cast<uint32_t>(shape_.atlasLayers)));
 }
@@ -105,11 +98,6 @@ void PlanBuilder::read(PlannedPass& pass, uint32_t image, int binding, const std
   pass.reads.push_back({image, static_cast<uint32_t>(binding), sampler, layer});
 }
 
-void PlanBuilder::readPyramid(PlannedPass& pass, int32_t layer) const {
-  for (std::size_t i = 0; i < pyramid_.size(); ++i)
-    read(pass, pyramid_[i], kSpreadUnit + static_cast<int>(i), kPyramid[i].first, layer);
-}
-
 void PlanBuilder::addPlanarDepth() {
   if (!p_.planarDepth()) return;
   PlannedPass& pass =
@@ -120,16 +108,17 @@ void PlanBuilder::addPlanarDepth() {
   pass.numbers = {StageNumber::depthRows, StageNumber::metresPerUnit};
 }
 
-// What shaders/gl/seam.glsl looks up in a stage: glsl_text.h has the order of its textures.
+// What shaders/gl/seam.glsl looks up in a stage.
 void PlanBuilder::readSeam(PlannedPass& pass) const {
+  const auto readFrom = [&](int unit, uint32_t image) { read(pass, image, unit, kSeamSamplers[unit]); };
   const pld_stage stage = pass.stage;
   const bool low = stage == PLD_STAGE_LOW, layers = stage == PLD_STAGE_LAYERS;
   const bool tests = p_.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS || low;
   const bool rims = p_.rimsInSeam() && layers;
-  if (tests || rims || (p_.scatters() && (layers || low))) read(pass, low ? farthestZ_ : planarZ_, 0, "pldOpaqueZ");
-  if (!solids_.empty() && stage != PLD_STAGE_SOLIDS && !low) read(pass, solids_[0].image, 1, "pldSolid");
-  if (!front_.empty() && layers) read(pass, front_[0].image, 2, "pldFrontZ");
-  if (rims) read(pass, occlusion_, 3, "pldOpaqueOpen");
+  if (tests || rims || (p_.scatters() && (layers || low))) readFrom(0, low ? farthestZ_ : planarZ_);
+  if (!solids_.empty() && stage != PLD_STAGE_SOLIDS && !low) readFrom(1, solids_[0].image);
+  if (!front_.empty() && layers) readFrom(2, front_[0].image);
+  if (rims) readFrom(3, occlusion_);
 }
 
 void PlanBuilder::addStage(pld_stage stage, const char* name, const Planes& planes) {
@@ -245,94 +234,6 @@ void PlanBuilder::addLowResolution() {
     if (over_.empty() || (plane.spec.sum != PlaneSum::frontRadiance && plane.spec.sum != PlaneSum::frontDepth))
       sums.push_back(plane);
   attach(upsampled, sums, PLD_LOAD_KEEP, true);
-}
-
-void PlanBuilder::addSpread() {
-  if (!p_.has(PLD_FEATURE_DIFFUSION)) return;
-  PlannedPass& pass = addPass("spread", PLD_STAGE_LAYERS, "gl/spread_level.frag", resolveDefines(p_));
-  pass.moment = Moment::resolve;
-  pass.part = PartOfFrame::pyramid;
-  read(pass, colour_, kBackgroundUnit, "background");
-  read(pass, planarZ_, kOpaqueZUnit, "opaqueZ");
-  if (!solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solid");
-  for (const PlacedPlane& plane : layers_)  // of the published tier all planes say what a pixel spreads by
-    if (p_.published() || plane.spec.sum == PlaneSum::refraction)
-      read(pass, plane.image, plane.spec.unit, plane.spec.name);
-  readPyramid(pass, PLD_LAYER_BEFORE);
-  for (std::size_t i = 0; i < pyramid_.size(); ++i)
-    pass.attachments.push_back(
-        {pyramid_[i], static_cast<uint32_t>(i), PLD_LAYER_OF_REPEAT, PLD_LOAD_ANY, kAllComponents, {}});
-  pass.numbers = {StageNumber::pictureSize, StageNumber::level, StageNumber::spreadLevels};
-}
-
-//   colour   of the background, where nothing shows another
-//   nearest  the depth of the nearest layer
-void PlanBuilder::readResolved(PlannedPass& pass, bool colour, bool nearest) const {
-  if (colour || p_.scatters()) read(pass, colour_, kBackgroundUnit, "background");
-  for (const PlacedPlane& plane : layers_)
-    if (plane.spec.sum != PlaneSum::nearestZ || nearest || p_.scatters())
-      read(pass, plane.image, plane.spec.unit, plane.spec.name);
-  for (const PlacedPlane& plane : over_) read(pass, plane.image, plane.spec.unit, plane.spec.name);
-  if (p_.scatters()) read(pass, planarZ_, kOpaqueZUnit, "opaqueZ");
-  if (!solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solid");
-  readPyramid(pass, PLD_LAYERS_ALL);
-  pass.numbers = {StageNumber::pictureSize};
-  if (!p_.scatters()) return;
-  pass.numbers.insert(pass.numbers.end(), {StageNumber::lookup, StageNumber::largestSpread});
-  if (pyramid_.empty()) return;
-  pass.numbers.push_back(StageNumber::spreadLevels);
-  if (shape_.atlasLayers > 1) pass.defines.emplace_back("SPREAD_LAYERS");
-}
-
-PlannedPass& PlanBuilder::addShown(const char* name, const char* file, int firstView, int lastView) {
-  PlannedPass& pass = addPass(name, PLD_STAGE_LAYERS, file, resolveDefines(p_));
-  pass.moment = Moment::resolve;
-  pass.firstView = firstView;
-  pass.lastView = lastView;
-  return pass;
-}
-
-void PlanBuilder::addPicture() {
-  PlannedPass& pass = addShown("picture", "gl/picture.frag", PLD_VIEW_PICTURE, PLD_VIEW_PICTURE);
-  readResolved(pass, true, false);
-  attachWhole(pass, picture_);
-  if (!p_.outputs()) return;
-  for (const bool depth : {false, true}) {
-    const int view = depth ? PLD_VIEW_NEAREST_DEPTH : PLD_VIEW_REACTIVE;
-    PlannedPass& output = addShown(depth ? "nearest depth" : "reactive", "gl/outputs.frag", view, view);
-    readResolved(output, false, true);
-    output.numbers.push_back(StageNumber::view);
-    attachWhole(output, depth ? nearestDepth_ : reactive_);
-  }
-}
-
-void PlanBuilder::addDebugViews() {
-  if (!shape_.debugViews) return;
-  PlannedPass& sums = addShown("view", "gl/view.frag", PLD_VIEW_LAYER_COUNT, PLD_VIEW_SOLID);
-  readResolved(sums, true, true);
-  sums.numbers.push_back(StageNumber::view);
-  attachWhole(sums, picture_);
-  if (p_.rimsApart()) {
-    constexpr int openUnit = 14;
-    PlannedPass& rims = addShown("view of rims", "gl/view_rims.frag", PLD_VIEW_RIM_OCCLUSION, PLD_VIEW_RIM_LOSS);
-    // What rims take is looked at where it is, not where it is seen.
-    rims.defines = resolveDefines(p_, false);
-    rims.defines.push_back(rimSamplers());
-    for (const Planes* planes : {&layers_, &rims_})
-      for (const PlacedPlane& plane : *planes) read(rims, plane.image, plane.spec.unit, plane.spec.name);
-    read(rims, planarZ_, kOpaqueZUnit, "opaqueZ");
-    read(rims, occlusion_, openUnit, "opaqueOpen");
-    if (!solids_.empty()) read(rims, solids_[0].image, kSolidUnit, "solid");
-    rims.numbers = {StageNumber::pictureSize, StageNumber::form, StageNumber::view};
-    attachWhole(rims, picture_);
-  }
-  if (p_.low()) {
-    PlannedPass& low = addShown("view of low resolution", "gl/view_low.frag", PLD_VIEW_LOW_COLOUR, PLD_VIEW_LOW_DEPTH);
-    low.defines.clear();
-    for (std::size_t i = 0; i < texels_.size(); ++i) read(low, texels_[i], static_cast<int>(i), kTexels[i]);
-    low.numbers = {StageNumber::view, StageNumber::factor};
-    attachWhole(low, picture_);
-  }
 }
 
 RecipePlan recipePlan(const Permutation& permutation, const PlanShape& shape) {

@@ -7,6 +7,11 @@
 
 namespace pellucid::c {
 
+// Images by the names of their samplers: planes of the spread pyramid, and texels of low resolution.
+constexpr const char* kPyramid[] = {"spreadColour", "spreadLimits", "spreadMoments", "spreadReachColour",
+                                    "spreadRateColour"};
+constexpr const char* kTexels[] = {"radianceTexels", "opacityTexels", "depthTexels"};
+
 class PlanBuilder {
  public:
   PlanBuilder(const Permutation& permutation, const PlanShape& shape) : p_(permutation), shape_(shape) {
@@ -21,7 +26,7 @@ class PlanBuilder {
   void addStages();  // solids, front, layers, rims
   void addRimsApplied();
   void addLowResolution();
-  void addSpread();
+  void addSpread();  // from here on in plan_resolve.cpp
   void addPicture();
   void addDebugViews();
 

@@ -11,8 +11,6 @@
 namespace pellucid::c {
 namespace {
 
-constexpr uint32_t kAllComponents = 15;
-
 // Whether one program serves both passes.
 bool lookAlike(const PlannedPass& a, const PlannedPass& b) {
   const auto same = [](const PlannedRead& x, const PlannedRead& y) {

@@ -42,6 +42,8 @@ struct PlannedImage {
   std::array<float, 4> clear{};
 };
 
+constexpr uint32_t kAllComponents = 15;  // of pld_recipe_attachment.write_mask
+
 struct PlannedRead {
   uint32_t image;
   uint32_t binding;  // of draws: beside the first of the seam's
