@@ -1,15 +1,15 @@
-// The passes of pld_resolve(): the spread pyramid, the picture and what else is shown.
-#include "engine_bridge/c/plan_builder.h"
+#include "engine_bridge/c/plan_resolve.h"
+
 #include "shaders/plane_defines.h"
 
 namespace pellucid::c {
 
-void PlanBuilder::readPyramid(PlannedPass& pass, int32_t layer) const {
+void ResolvePlan::readPyramid(PlannedPass& pass, int32_t layer) const {
   for (std::size_t i = 0; i < pyramid_.size(); ++i)
     read(pass, pyramid_[i], kSpreadUnit + static_cast<int>(i), kPyramid[i], layer);
 }
 
-void PlanBuilder::addSpread() {
+void ResolvePlan::addSpread() {
   if (!p_.has(PLD_FEATURE_DIFFUSION)) return;
   PlannedPass& pass = addPass("spread", PLD_STAGE_LAYERS, "gl/spread_level.frag", resolveDefines(p_));
   pass.moment = Moment::resolve;
@@ -29,7 +29,7 @@ void PlanBuilder::addSpread() {
 
 //   colour   of the background, where nothing shows another
 //   nearest  the depth of the nearest layer
-void PlanBuilder::readResolved(PlannedPass& pass, bool colour, bool nearest) const {
+void ResolvePlan::readResolved(PlannedPass& pass, bool colour, bool nearest) const {
   if (colour || p_.scatters()) read(pass, colour_, kBackgroundUnit, "background");
   for (const PlacedPlane& plane : layers_)
     if (plane.spec.sum != PlaneSum::nearestZ || nearest || p_.scatters())
@@ -46,7 +46,7 @@ void PlanBuilder::readResolved(PlannedPass& pass, bool colour, bool nearest) con
   if (shape_.atlasLayers > 1) pass.defines.emplace_back("SPREAD_LAYERS");
 }
 
-PlannedPass& PlanBuilder::addShown(const char* name, const char* file, int firstView, int lastView) {
+PlannedPass& ResolvePlan::addShown(const char* name, const char* file, int firstView, int lastView) {
   PlannedPass& pass = addPass(name, PLD_STAGE_LAYERS, file, resolveDefines(p_));
   pass.moment = Moment::resolve;
   pass.firstView = firstView;
@@ -54,7 +54,7 @@ PlannedPass& PlanBuilder::addShown(const char* name, const char* file, int first
   return pass;
 }
 
-void PlanBuilder::addPicture() {
+void ResolvePlan::addPicture() {
   PlannedPass& pass = addShown("picture", "gl/picture.frag", PLD_VIEW_PICTURE, PLD_VIEW_PICTURE);
   readResolved(pass, true, false);
   attachWhole(pass, picture_);
@@ -68,7 +68,7 @@ void PlanBuilder::addPicture() {
   }
 }
 
-void PlanBuilder::addDebugViews() {
+void ResolvePlan::addDebugViews() {
   if (!shape_.debugViews) return;
   PlannedPass& sums = addShown("view", "gl/view.frag", PLD_VIEW_LAYER_COUNT, PLD_VIEW_SOLID);
   readResolved(sums, true, true);
