@@ -14,29 +14,38 @@ const char* textOf(const std::string& name) {
   throw std::logic_error("no shader named " + name);
 }
 
-void append(const std::string& name, std::set<std::string>& seen, std::string& out) {
+using Parts = std::vector<std::string_view>;
+
+void append(const std::string& name, std::set<std::string>& seen, Parts& parts) {
   if (!seen.insert(name).second) return;
-  constexpr std::string_view key = "#include \"";
+  constexpr std::string_view key = "#include \"", once = "#pragma once\n";
   const std::string_view text = textOf(name);
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
-    if (line == "#pragma once") continue;
-    if (line.substr(0, key.size()) == key)
-      append(std::string(line.substr(key.size(), line.rfind('"') - key.size())), seen, out);
-    else
-      out.append(line) += '\n';
+  std::size_t begin = text.substr(0, once.size()) == once ? once.size() : 0;
+  const auto isLine = [&](std::size_t at) { return at == 0 || text[at - 1] == '\n'; };
+  for (std::size_t at = text.find(key, begin); at != std::string_view::npos; at = text.find(key, at + 1)) {
+    if (!isLine(at)) continue;
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view included = text.substr(at + key.size(), end - at - key.size());
+    if (at > begin) parts.push_back(text.substr(begin, at - begin));
+    append(std::string(included.substr(0, included.rfind('"'))), seen, parts);
+    begin = std::min(end + 1, text.size());
   }
+  if (begin < text.size()) parts.push_back(text.substr(begin));
 }
 
 }  // namespace
 
+std::vector<std::string_view> shaderParts(const std::string& name) {
+  std::set<std::string> seen;
+  Parts parts;
+  append(name, seen, parts);
+  return parts;
+}
+
 std::string shaderSource(const std::string& name, const std::vector<std::string>& defines) {
   std::string out = "#version 450 core\n#define PLD_FN\n";
   for (const std::string& define : defines) out.append("#define ").append(define) += '\n';
-  std::set<std::string> seen;
-  append(name, seen, out);
+  for (const std::string_view part : shaderParts(name)) out += part;
   return out;
 }
 

@@ -43,7 +43,7 @@ uint32_t usageOf(const PlannedPass& pass, uint32_t image) {
 }  // namespace
 
 pld_recipe::pld_recipe(const Permutation& of, const pld_recipe_info& info)
-    : permutation(of), plan(recipePlan(permutation, info.clip)) {
+    : permutation(of), plan(recipePlan(permutation, {info.clip})) {
   addImages();
   for (int i = 0; i < listBlocks(permutation); ++i) buffers.push_back({kListNames[i]});
   kept_.resize(plan.passes.size());

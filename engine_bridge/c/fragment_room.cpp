@@ -12,10 +12,12 @@ namespace {
 constexpr float kMostAPixel = 65536.0f;
 static_assert(kListBlocks == kMostStorage);
 
-// Outputs of what folds a stage.
-std::size_t outputsOf(const Permutation& p) {
-  const std::size_t planes = planesOf(p).size();
-  return p.low() ? std::max(planes, planesOf(lowPermutation(p)).size()) : planes;
+// The most that a pass with lists draws to.
+std::size_t outputsOf(const RecipePlan& plan) {
+  std::size_t most = 0;
+  for (const PlannedPass& pass : plan.passes)
+    if (pass.lists > 0) most = std::max(most, pass.attachments.size());
+  return most;
 }
 
 }  // namespace
@@ -42,7 +44,7 @@ pld_status FragmentRoom::check() const {
   gl.GetIntegerv(GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES, &resources);
   gl.GetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &bindings);
   gl.GetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &found);
-  const int blocks = listBlocks(p), written = blocks + static_cast<int>(outputsOf(p));
+  const int blocks = listBlocks(p), written = blocks + static_cast<int>(outputsOf(plan_));
   if (found < blocks || bindings < blocks)
     return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_create: found %d storage blocks for fragments, expected %d", found,
                         blocks);
@@ -53,28 +55,6 @@ pld_status FragmentRoom::check() const {
     return device_.fail(PLD_ERROR_ARGUMENT, "pld_create: storage_binding: found %u, expected at most %d",
                         info.storage_binding, bindings - blocks);
   return PLD_OK;
-}
-
-std::string FragmentRoom::build() {
-  const Permutation& p = device_.permutation;
-  if (!p.exact()) return {};
-  const std::vector<std::string> places = storageDefines(static_cast<int>(device_.info.storage_binding));
-  for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}) {
-    if (!(stagesOf(p) & (1u << stage))) continue;
-    std::vector<std::string> defines = foldDefines(stage == PLD_STAGE_LOW ? lowPermutation(p) : p, stage);
-    defines.insert(defines.end(), places.begin(), places.end());
-    const char* const file = stage == PLD_STAGE_SOLIDS ? "gl/exact_solids.frag"
-                             : p.sorted()              ? "gl/exact_over.frag"
-                                                       : "gl/exact_fold.frag";
-    std::string failure = folds_[stage].build(device_.gl, file, defines);
-    if (!failure.empty()) return failure;
-  }
-  return {};
-}
-
-void FragmentRoom::destroy() {
-  release();
-  for (Program& program : folds_) program.destroy(device_.gl);
 }
 
 pld_status FragmentRoom::make(int width, int height) {
@@ -131,25 +111,14 @@ void FragmentRoom::open() const {
   device_.allowColours(0, false);
 }
 
-pld_status FragmentRoom::fold(pld_stage stage, GLuint frame, int width, int height, const pld_frame& numbers,
-                              GLuint solid) {
-  const GlFunctions& gl = device_.gl;
-  setPlainDrawing(gl, width, height);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+void FragmentRoom::show() const {
   bind();  // the host may have put others there meanwhile
-  gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  const Program& fold = folds_[stage];
-  device_.use(fold);
-  gl.Uniform1i(fold.place(gl, "rowLength"), width_);
-  if (solid && device_.permutation.sorted()) {
-    device_.bind(device_.info.texture_unit, solid);
-    gl.Uniform1i(fold.place(gl, "solidHere"), static_cast<GLint>(device_.info.texture_unit));
-  }
-  gl.Uniform4f(fold.place(gl, "weight"), numbers.weight_near, numbers.weight_far, numbers.weight_exponent,
-               referenceOf(numbers));
-  device_.drawEverywhere();
+  device_.gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+pld_status FragmentRoom::count() {
   GLuint came = 0;
-  gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(came), &came);
+  device_.gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(came), &came);
   fragments_ = std::max<uint64_t>(fragments_, came);
   if (came <= room_) return PLD_OK;
   const double pixels = static_cast<double>(width_) * static_cast<double>(height_);

@@ -4,14 +4,22 @@
 #include <cctype>
 #include <cstdint>
 #include <cstdio>
+#include <map>
+#include <mutex>
 
-#include "engine_bridge/c/text_words.h"
+#include "engine_bridge/c/word_template.h"
 #include "shaders/shader_source.h"
 
 namespace pellucid::c {
 namespace {
 
 using Words = std::unordered_set<std::string_view>;
+
+std::string definesText(const std::vector<std::string>& defines) {
+  std::string text;
+  for (const std::string& define : defines) text.append("#define ").append(define) += '\n';
+  return text;
+}
 
 // GLSL 3.30 has no `precise`.
 bool isMissing(std::string_view word, const GlslTarget& target) {
@@ -26,14 +34,6 @@ bool isPublic(std::string_view word) {
 
 bool begins(std::string_view word, std::string_view with) {
   return word.substr(0, with.size()) == with;
-}
-
-// A whole text without its #version line, and for the host's without the line of PLD_FN.
-std::string withoutLines(std::string text, int lines) {
-  std::size_t at = 0;
-  for (int i = 0; i < lines; ++i) at = text.find('\n', at) + 1;
-  text.erase(0, at);
-  return text;
 }
 
 // How the names of one text keep clear of the host's and of each other's.
@@ -60,28 +60,63 @@ constexpr const char* kEsPrecision =
     "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
     "precision highp sampler2DArray;\n";
 
+// A file for hosts, read once in a process.
+struct HostFile {
+  HostFile(const HostFile&) = delete;
+  HostFile& operator=(const HostFile&) = delete;
+  explicit HostFile(const std::string& file)
+      : text(wholeText(file)),
+        declared(declaredIn(text)),
+        words(text, [](std::string_view word) { return !std::isdigit(static_cast<unsigned char>(word[0])); }) {}
+
+  static std::string wholeText(const std::string& file) {
+    std::string whole;
+    for (const std::string_view part : shaderParts(file)) whole += part;
+    return whole;
+  }
+
+  std::string text;
+  Words declared;  // of `text`
+  WordTemplate words;
+};
+
+const HostFile& hostFile(const std::string& file) {
+  static std::mutex mutex;
+  static std::map<std::string, HostFile> files;
+  const std::lock_guard lock(mutex);
+  return files.try_emplace(file, file).first->second;
+}
+
 std::string hostText(const std::string& file, std::vector<std::string> defines, const GlslTarget& target,
                      const SeamPlaces& at, const Names& names) {
   if (target.dialect == PLD_DIALECT_ES) defines.emplace_back("LOOKED_UP_LATE");
-  const std::string text = withoutLines(shaderSource(file, defines), 2);
-  const Words own = declaredIn(text);
+  const HostFile& body = hostFile(file);
+  const std::string head = definesText(defines);
+  const Words defined = declaredIn(head);
   const auto place = [&](std::string_view word) {
     const int number = word.back() - '0';
     if (begins(word, "PLD_STORAGE_")) return layoutText(target, "std430", at.firstStorage + number);
     return target.placesBindings() ? layoutText(target, nullptr, at.firstUnit + number) : std::string();
   };
-  const std::string changed = withWords(text, [&](std::string_view word, std::string& out) {
+  const auto change = [&](std::string_view word, std::string& out) {
     const bool ours = word[0] == 'P' && begins(word, "PLD_");
     if ((ours && word == "PLD_FN") || isMissing(word, target)) return;
     if (ours && word == "PLD_FRAME_LAYOUT")
       out += layoutText(target, "std140", at.uniformBinding);
     else if (ours && (begins(word, "PLD_STORAGE_") || (begins(word, "PLD_UNIT_") && word.size() == 10)))
       out += place(word);
-    else if (!own.count(word) || !rename(word, names, out))
+    else if ((!body.declared.count(word) && !defined.count(word)) || !rename(word, names, out))
       out += word;
-  });
-  return std::string("#ifndef ") + names.guard + "\n#define " + names.guard + "\n" +
-         (target.dialect == PLD_DIALECT_ES ? kEsPrecision : "") + changed + "#endif\n";
+  };
+  std::string text = std::string("#ifndef ") + names.guard + "\n#define " + names.guard + "\n" +
+                     (target.dialect == PLD_DIALECT_ES ? kEsPrecision : "") + withWords(head, change);
+  text.reserve(text.size() + body.words.size() * 5 / 4);
+  body.words.write(text, change);
+  return text + "#endif\n";
+}
+
+std::string withoutFirstLine(const std::string& text) {
+  return text.substr(text.find('\n') + 1);
 }
 
 // The text without `layout(binding = N) ` before samplers, which are told to found(name, N).
@@ -112,6 +147,31 @@ std::string withoutLooseUniforms(const std::string& text) {
   return out.append(text, from);
 }
 
+bool changesInStages(std::string_view word) {
+  return word == "precise" || word == "gl_VertexID" || word == "binding" || begins(word, "PLD_STORAGE_");
+}
+
+using StageParts = std::vector<const WordTemplate*>;
+
+// The parts of a full-screen stage without loose uniforms. Each is read once in a process: files share them.
+const StageParts& stageParts(const std::string& file) {
+  static std::mutex mutex;
+  static std::map<const char*, WordTemplate> read;  // by where it lies in kShaderTexts
+  static std::map<std::string, StageParts> files;
+  const std::lock_guard lock(mutex);
+  if (const auto found = files.find(file); found != files.end()) return found->second;
+  StageParts parts;
+  for (const std::string_view part : shaderParts(file)) {
+    auto one = read.find(part.data());
+    if (one == read.end()) {
+      const std::string text = withoutLooseUniforms("\n" + std::string(part)).substr(1);
+      one = read.try_emplace(part.data(), text, changesInStages).first;
+    }
+    parts.push_back(&one->second);
+  }
+  return files.emplace(file, std::move(parts)).first->second;
+}
+
 }  // namespace
 
 std::string layoutText(const GlslTarget& target, const char* packing, int binding) {
@@ -128,7 +188,7 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
   target.version = version;
   OwnText own;
   const std::string text =
-      withoutUnits(withoutLines(shaderSource(file, defines), 1), [&](const std::string& name, int unit) {
+      withoutUnits(withoutFirstLine(shaderSource(file, defines)), [&](const std::string& name, int unit) {
         own.samplers.push_back({name, unit});
       });
   own.text =
@@ -140,25 +200,30 @@ OwnText ownText(const std::string& file, const std::vector<std::string>& defines
 
 std::string recipeStageText(const std::string& file, const std::vector<std::string>& defines, const GlslTarget& target,
                             const std::string& block, int storage) {
-  std::string text = withoutLooseUniforms("\n" + withoutLines(shaderSource(file, defines), 1));
-  if (!target.placesBindings()) text = withoutUnits(text, [](const std::string&, int) {});
   const bool es = target.dialect == PLD_DIALECT_ES, vulkan = target.dialect == PLD_DIALECT_VULKAN;
   const std::string set = "set = " + std::to_string(target.set) + ", ";
-  return "#version " + std::to_string(target.version) +
-         (es       ? " es\n"
-          : vulkan ? "\n"
-                   : " core\n") +
-         (es ? kEsPrecision : "") + block + withWords(text, [&](std::string_view word, std::string& out) {
-           if (isMissing(word, target)) return;
-           if (word[0] == 'P' && begins(word, "PLD_STORAGE_"))
-             out += layoutText(target, "std430", storage + word.back() - '0');
-           else if (vulkan && word == "gl_VertexID")
-             out += "gl_VertexIndex";
-           else if (vulkan && word == "binding")
-             out.append(set).append(word);
-           else
-             out.append(word);
-         });
+  const auto change = [&](std::string_view word, std::string& out) {
+    if (isMissing(word, target)) return;
+    if (word[0] == 'P' && begins(word, "PLD_STORAGE_"))
+      out += layoutText(target, "std430", storage + word.back() - '0');
+    else if (vulkan && word == "gl_VertexID")
+      out += "gl_VertexIndex";
+    else if (vulkan && word == "binding")
+      out.append(set).append(word);
+    else
+      out.append(word);
+  };
+  std::string text = "#version " + std::to_string(target.version) +
+                     (es       ? " es\n"
+                      : vulkan ? "\n"
+                               : " core\n") +
+                     (es ? kEsPrecision : "") + block + withWords("\n#define PLD_FN\n" + definesText(defines), change);
+  const StageParts& parts = stageParts(file);
+  std::size_t size = text.size();
+  for (const WordTemplate* part : parts) size += part->size() * 9 / 8;
+  text.reserve(size);
+  for (const WordTemplate* part : parts) part->write(text, change);
+  return target.placesBindings() ? text : withoutUnits(text, [](const std::string&, int) {});
 }
 
 std::vector<std::string> storageDefines(int first) {

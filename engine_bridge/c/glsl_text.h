@@ -55,8 +55,6 @@ std::vector<std::string> storageDefines(int first);
 // for every version and place.
 std::string seamMark(const Permutation& permutation, pld_stage stage);
 const char* casterMark(bool coloured);
-// Textures that seams read, in the order of their units.
-constexpr const char* kSeamSamplers[] = {"pldOpaqueZ", "pldSolid", "pldFrontZ", "pldOpaqueOpen"};
 std::string seamText(const Permutation& permutation, pld_stage stage, const GlslTarget& target,
                      const SeamPlaces& places);
 std::string casterText(bool coloured, const GlslTarget& target, const SeamPlaces& places);

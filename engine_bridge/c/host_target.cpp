@@ -16,10 +16,6 @@ bool isOfRims(pld_view view) {
   return view == PLD_VIEW_RIM_OCCLUSION || view == PLD_VIEW_RIM_LOSS;
 }
 
-bool isOfLow(pld_view view) {
-  return view >= PLD_VIEW_LOW_COLOUR && view <= PLD_VIEW_LOW_DEPTH;
-}
-
 void HostTarget::create() {
   device_.makeFrame(frame_);
 }
@@ -43,9 +39,8 @@ pld_status HostTarget::check(const pld_target& target, int width, int height, GL
   if (source && target.name == source)
     return device_.fail(PLD_ERROR_TEXTURE,
                         "pld_resolve: target %u is the frame's colour_texture, which is read meanwhile", target.name);
-  for (const Plane& plane : planes_.layers())
-    if (plane.texture == target.name)
-      return device_.fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is a plane of this pass", target.name);
+  if (textures_.holds(target.name))
+    return device_.fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is a plane of this pass", target.name);
   if (!isColour(facts.format))
     return device_.fail(PLD_ERROR_FORMAT, "pld_resolve: target has format 0x%x, expected RGB or RGBA",
                         static_cast<unsigned>(facts.format));

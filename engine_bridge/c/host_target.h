@@ -1,12 +1,12 @@
 // Where a resolve draws to: a texture or a framebuffer of the host's.
 #pragma once
-#include "engine_bridge/c/plane_set.h"
+#include "engine_bridge/c/plan_textures.h"
 
 namespace pellucid::c {
 
 class HostTarget {
  public:
-  HostTarget(Device& device, const PlaneSet& planes) : device_(device), planes_(planes) {}
+  HostTarget(Device& device, const PlanTextures& textures) : device_(device), textures_(textures) {}
 
   void create();
   void destroy();
@@ -22,14 +22,13 @@ class HostTarget {
   bool drawsTo(const pld_target& target, GLuint texture) const;
 
   Device& device_;
-  const PlaneSet& planes_;
+  const PlanTextures& textures_;
   GLuint frame_ = 0;  // of texture targets
 };
 
-// Views of shadow maps; of rims; of layers at low resolution.
+// Views of shadow maps; of what later passes ask for; of rims.
 bool isOfShadows(pld_view view);
 bool isOutput(pld_view view);  // PLD_FEATURE_OUTPUTS
 bool isOfRims(pld_view view);
-bool isOfLow(pld_view view);
 
 }  // namespace pellucid::c

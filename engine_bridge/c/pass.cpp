@@ -4,8 +4,15 @@
 
 #include "engine_bridge/c/frame_checks.h"
 #include "engine_bridge/c/pass_choices.h"
+#include "engine_bridge/c/plan_builder.h"
 
 using namespace pellucid::c;
+
+namespace {
+
+constexpr int kAtlasLayers = 1;  // of the spread pyramid: GL has a barrier between its levels
+
+}  // namespace
 
 pld_status pld_pass::checkFeatures() {
   const Permutation& p = device.permutation;
@@ -41,19 +48,12 @@ pld_status pld_pass::checkDevice() {
 // Framebuffers, buffers and programs: all but what has the picture's size. Empty, else the driver's words.
 std::string pld_pass::makeParts() {
   device.create();
-  planes_.create();
-  rims_.create();
-  low_.create();
-  spread_.create();
+  textures_.create(plan_);
   stages_.create();
   views_.create();
   validation_.create();
-  std::string failure = views_.build();
+  std::string failure = runner_.build();
   if (failure.empty()) failure = stages_.build();
-  if (failure.empty()) failure = spread_.build();
-  if (failure.empty()) failure = rims_.build();
-  if (failure.empty()) failure = low_.build();
-  if (failure.empty()) failure = room_.build();
   return failure;
 }
 
@@ -63,6 +63,7 @@ pld_status pld_pass::create(const pld_create_info& info) {
   p = permutationOf(info);
   if (!device.isHostSince(4) && p.scatters() && !p.published()) p.features |= PLD_FEATURE_LIGHT;
   if (const pld_status status = checkFeatures(); status != PLD_OK) return status;
+  plan_ = recipePlan(p, {info.clip, kAtlasLayers, (info.flags & PLD_FLAG_DEBUG_VIEWS) != 0});
   if (const pld_status status = checkDevice(); status != PLD_OK) return status;
   device.reportPendingErrors("pld_create");
   SavedState state;
@@ -78,31 +79,22 @@ pld_status pld_pass::create(const pld_create_info& info) {
 
 void pld_pass::destroyObjects() {
   casters_.release();
-  room_.destroy();
+  room_.release();
   validation_.destroy();
   views_.destroy();
   stages_.destroy();
-  spread_.destroy();
-  low_.destroy();
-  rims_.destroy();
-  planes_.destroy();
+  runner_.destroy();
+  textures_.destroy();
   device.destroy();
 }
 
 pld_status pld_pass::makeTextures(int width, int height) {
-  bool complete = planes_.make(width, height);
-  complete = low_.make(width, height) && complete;
-  complete = rims_.make(width, height) && complete;
-  complete = spread_.make(width, height) && complete;
-  if (complete) return room_.make(width, height);
+  if (textures_.make(width, height)) return room_.make(width, height);
   return device.fail(PLD_ERROR_UNSUPPORTED, "pld_resize: this device cannot draw to the planes of this tier at once");
 }
 
 void pld_pass::releaseTextures() {
-  planes_.release();
-  low_.release();
-  rims_.release();
-  spread_.release();
+  textures_.release();
   room_.release();
   width_ = height_ = 0;
 }
@@ -205,7 +197,7 @@ pld_status pld_pass::resolve(const pld_target& target) {
     return device.fail(PLD_ERROR_ORDER, "pld_resolve: before all stages of a frame have met their pld_end");
   if (const pld_status status = views_.check(target, stages_.frame()); status != PLD_OK) return status;
   // Views of the same planes may follow; the next frame begins with its first stage.
-  if (!ofShadows) return views_.resolve(target, stages_.frame());
+  if (!ofShadows) return views_.resolve(target, stages_.frame(), width_);
   if (step_ == Step::open) return device.fail(PLD_ERROR_ORDER, "pld_resolve: between pld_begin and pld_end");
   return views_.resolveFace(target);
 }
@@ -249,20 +241,16 @@ pld_status pld_pass::queryPlane(pld_value what, uint64_t& value) {
   if (plane < 0 || plane >= kDrawBuffers)
     return device.fail(PLD_ERROR_ARGUMENT, "pld_query: found value %d, which pld_value does not have",
                        static_cast<int>(what));
-  value = 0;
-  for (const Plane& one : planes_.layers())
-    if (one.spec.target == plane) value = one.texture;
+  value = textures_.layersAt(plane);
   return PLD_OK;
 }
 
 pld_status pld_pass::query(pld_value what, uint64_t& value) {
   const Permutation& p = device.permutation;
-  uint64_t bits = 0;
-  for (const Plane& plane : planes_.layers()) bits += static_cast<uint64_t>(plane.spec.bits());
-  if (queryOf(p, bits, planes_.layers().size(), what, value)) return PLD_OK;
+  if (queryOf(p, what, value)) return PLD_OK;
   switch (what) {
     case PLD_VALUE_BYTES:
-      value = planes_.bytes() + low_.bytes() + rims_.bytes() + spread_.bytes() + room_.bytes();
+      value = textures_.bytes() + room_.bytes();
       return PLD_OK;
     case PLD_VALUE_NS_BEGIN:
     case PLD_VALUE_NS_DRAWS:

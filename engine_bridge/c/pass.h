@@ -39,14 +39,13 @@ struct pld_pass {
   pld_status queryTimes(pld_value what, uint64_t& value);
   pld_status queryPlane(pld_value what, uint64_t& value);
 
-  pellucid::c::PlaneSet planes_{device};
-  pellucid::c::RimStage rims_{device, planes_};
-  pellucid::c::LowStage low_{device, planes_};
-  pellucid::c::SpreadLevels spread_{device};
-  pellucid::c::FragmentRoom room_{device};
+  pellucid::c::RecipePlan plan_;  // of device.permutation
+  pellucid::c::PlanTextures textures_{device};
+  pellucid::c::PlanRunner runner_{device, plan_, textures_};
+  pellucid::c::FragmentRoom room_{device, plan_};
   pellucid::c::CasterMaps casters_{device};
-  pellucid::c::Stages stages_{device, planes_, rims_, low_, room_};
-  pellucid::c::Views views_{device, planes_, rims_, low_, spread_, casters_};
+  pellucid::c::Stages stages_{device, plan_, textures_, runner_, room_};
+  pellucid::c::Views views_{device, plan_, textures_, runner_, casters_};
   pellucid::c::HostTexts texts_{device, casters_};
   pellucid::c::Validation validation_{device, casters_};
 

@@ -9,6 +9,10 @@
 
 namespace pellucid::c {
 
+// Textures that seams read, in the order of their units.
+constexpr int kMostSeamUnits = 4;
+constexpr const char* kSeamSamplers[kMostSeamUnits] = {"pldOpaqueZ", "pldSolid", "pldFrontZ", "pldOpaqueOpen"};
+
 struct Permutation {
   pld_method method = PLD_METHOD_PHENOMENOLOGICAL;
   pld_tier tier = PLD_TIER_FLOAT;
@@ -39,7 +43,7 @@ struct Permutation {
   bool losesLight() const { return published() && has(PLD_FEATURE_LIGHT); }
   bool outputs() const { return has(PLD_FEATURE_OUTPUTS); }
   bool rimsApart() const { return rims() && !rimsInSeam(); }
-  int seamUnits() const { return rimsInSeam() ? 4 : 3; }  // textures that the seam reads
+  int seamUnits() const { return rimsInSeam() ? kMostSeamUnits : 3; }  // textures that the seam reads
   // Whether planar depth is needed beside the host's.
   bool planarDepth() const {
     return rims() || low() || scatters() || has(PLD_FEATURE_SOLIDS) || depth == PLD_DEPTH_LINEAR;

@@ -8,14 +8,7 @@ namespace pellucid::c {
 namespace {
 
 constexpr int kFarthestUnit = 5;  // of shaders/gl/low_texel.frag
-constexpr uint32_t kColours = 7, kAllComponents = 15;
-
-constexpr std::pair<const char*, const char*> kPyramid[] = {{"spreadColour", "colour"},
-                                                            {"spreadLimits", "limits"},
-                                                            {"spreadMoments", "moments"},
-                                                            {"spreadReachColour", "reachColour"},
-                                                            {"spreadRateColour", "rateColour"}};
-constexpr const char* kTexels[] = {"radianceTexels", "opacityTexels", "depthTexels"};
+constexpr uint32_t kColours = 7;  // of a write mask
 
 // Whether the layers' sums have a plane for it, which shaders/gl/packing.glsl unpacks.
 bool isPacked(PlaneSum sum) {
@@ -31,102 +24,27 @@ int listsOf(const Permutation& p, pld_stage stage) {
 
 }  // namespace
 
-uint32_t PlanBuilder::add(PlannedImage image) {
-  plan.images.push_back(std::move(image));
-  return static_cast<uint32_t>(plan.images.size() - 1);
-}
-
-uint32_t PlanBuilder::own(const char* name, pld_format format, PartOfFrame part, uint32_t layers) {
-  return add({name, PLD_ROLE_OWN, format, part, layers, {}});
-}
-
-PlanBuilder::Planes PlanBuilder::addPlanes(const std::vector<PlaneSpec>& specs, PartOfFrame part, const char* prefix) {
-  Planes planes;
-  for (const PlaneSpec& spec : specs)
-    planes.push_back(
-        {spec, add({std::string(prefix) + spec.name, PLD_ROLE_OWN, formatOf(spec.format), part, 1, spec.clear})});
-  return planes;
-}
-
-void PlanBuilder::addImages() {
-  const auto host = [&](const char* name, pld_role role) { return add({name, role}); };
-  colour_ = host("colour", PLD_ROLE_COLOUR);
-  depth_ = host("depth", PLD_ROLE_DEPTH);
-  if (p_.rims()) occlusion_ = host("occlusion", PLD_ROLE_OCCLUSION);
-  picture_ = host("picture", PLD_ROLE_PICTURE);
-  if (p_.outputs()) {
-    reactive_ = host("reactive", PLD_ROLE_REACTIVE);
-    nearestDepth_ = host("nearest depth", PLD_ROLE_NEAREST_DEPTH);
-  }
-  const LayerModel model = modelOf(p_);
-  layers_ = addPlanes(c::planesOf(p_));
-  if (p_.planarDepth()) planarZ_ = own("opaqueZ", PLD_FORMAT_R32F);
-  if (p_.frontStage()) front_ = addPlanes(pellucid::planesOf(model, PlaneStage::front));
-  if (p_.has(PLD_FEATURE_SOLIDS)) {
-    solids_ = addPlanes(pellucid::planesOf(model, PlaneStage::solids));
-    if (!p_.exact()) solidDepth_ = own("solidDepth", PLD_FORMAT_DEPTH32F);
-  }
-  if (p_.rimsApart()) rims_ = addPlanes(pellucid::planesOf(model, PlaneStage::rims));
-  if (p_.low()) addLowImages();
-  if (p_.has(PLD_FEATURE_DIFFUSION))
-    for (const auto& [name, output] : kPyramid)
-      pyramid_.push_back(own(name, PLD_FORMAT_RGBA32F, PartOfFrame::pyramid, kAtlasLayers));
-}
-
-void PlanBuilder::addLowImages() {
-  farthestZ_ = own("farthestZ", PLD_FORMAT_R32F, PartOfFrame::low);
-  low_ = addPlanes(c::planesOf(lowPermutation(p_)), PartOfFrame::low, "low ");
-  for (const char* name : kTexels) texels_.push_back(own(name, PLD_FORMAT_RGBA32F, PartOfFrame::low));
-  over_ = addPlanes(pellucid::planesOf(modelOf(p_), PlaneStage::over));
-}
-
-PlannedPass& PlanBuilder::addPass(const char* name, pld_stage stage, const char* file,
-                                  std::vector<std::string> defines) {
-  PlannedPass& pass = plan.passes.emplace_back();
-  pass.name = name;
-  pass.stage = stage;
-  pass.file = file;
-  pass.defines = std::move(defines);
-  return pass;
-}
-
-void PlanBuilder::attach(PlannedPass& pass, const Planes& planes, pld_load load, bool blends) {
-  for (const PlacedPlane& plane : planes)
-    pass.attachments.push_back({plane.image, static_cast<uint32_t>(plane.spec.target), 0, load, kAllComponents,
-                                blends ? blendOf(plane.spec.blend) : pld_blend{}});
-}
-
-void PlanBuilder::attachWhole(PlannedPass& pass, uint32_t image, uint32_t location) {
-  pass.attachments.push_back({image, location, 0, PLD_LOAD_ANY, kAllComponents, {}});
-}
-
-void PlanBuilder::read(PlannedPass& pass, uint32_t image, int binding, const std::string& sampler, int32_t layer) {
-  pass.reads.push_back({image, static_cast<uint32_t>(binding), sampler, layer});
-}
-
-void PlanBuilder::readPyramid(PlannedPass& pass, int32_t layer) const {
-  for (std::size_t i = 0; i < pyramid_.size(); ++i)
-    read(pass, pyramid_[i], kSpreadUnit + static_cast<int>(i), kPyramid[i].first, layer);
-}
-
 void PlanBuilder::addPlanarDepth() {
   if (!p_.planarDepth()) return;
-  PlannedPass& pass = addPass("planar depth", PLD_STAGE_LAYERS, "gl/planar_depth.frag", depthDefines(p_.depth, clip_));
+  PlannedPass& pass =
+      addPass("planar depth", firstStageOf(p_), "gl/planar_depth.frag", depthDefines(p_.depth, shape_.clip));
+  pass.moment = Moment::begin;
   read(pass, depth_, 0, "hostDepth");
   attachWhole(pass, planarZ_);
   pass.numbers = {StageNumber::depthRows, StageNumber::metresPerUnit};
 }
 
-// What shaders/gl/seam.glsl looks up in a stage: glsl_text.h has the order of its textures.
+// What shaders/gl/seam.glsl looks up in a stage.
 void PlanBuilder::readSeam(PlannedPass& pass) const {
+  const auto readFrom = [&](int unit, uint32_t image) { read(pass, image, unit, kSeamSamplers[unit]); };
   const pld_stage stage = pass.stage;
   const bool low = stage == PLD_STAGE_LOW, layers = stage == PLD_STAGE_LAYERS;
   const bool tests = p_.depth == PLD_DEPTH_LINEAR || stage == PLD_STAGE_SOLIDS || low;
   const bool rims = p_.rimsInSeam() && layers;
-  if (tests || rims || (p_.scatters() && (layers || low))) read(pass, low ? farthestZ_ : planarZ_, 0, "pldOpaqueZ");
-  if (!solids_.empty() && stage != PLD_STAGE_SOLIDS && !low) read(pass, solids_[0].image, 1, "pldSolid");
-  if (!front_.empty() && layers) read(pass, front_[0].image, 2, "pldFrontZ");
-  if (rims) read(pass, occlusion_, 3, "pldOpaqueOpen");
+  if (tests || rims || (p_.scatters() && (layers || low))) readFrom(0, low ? farthestZ_ : planarZ_);
+  if (!solids_.empty() && stage != PLD_STAGE_SOLIDS && !low) readFrom(1, solids_[0].image);
+  if (!front_.empty() && layers) readFrom(2, front_[0].image);
+  if (rims) readFrom(3, occlusion_);
 }
 
 void PlanBuilder::addStage(pld_stage stage, const char* name, const Planes& planes) {
@@ -134,6 +52,7 @@ void PlanBuilder::addStage(pld_stage stage, const char* name, const Planes& plan
   const bool low = stage == PLD_STAGE_LOW, solids = stage == PLD_STAGE_SOLIDS;
   PlannedPass& pass = addPass(name, stage, "", {});
   pass.kind = PLD_PASS_DRAWS;
+  pass.moment = Moment::draws;
   pass.part = low ? PartOfFrame::low : PartOfFrame::picture;
   readSeam(pass);
   if (p_.exact()) {
@@ -201,6 +120,7 @@ void PlanBuilder::addLowResolution() {
   std::vector<std::string> noSolids;
   if (solids_.empty()) noSolids.emplace_back("NO_SOLIDS");
   PlannedPass& depth = addPass("farthest depth", PLD_STAGE_LOW, "gl/low_depth.frag", noSolids);
+  depth.moment = Moment::begin;
   depth.part = PartOfFrame::low;
   read(depth, planarZ_, 0, "opaqueZ");
   if (!solids_.empty()) read(depth, solids_[0].image, 1, "solid");
@@ -242,59 +162,8 @@ void PlanBuilder::addLowResolution() {
   attach(upsampled, sums, PLD_LOAD_KEEP, true);
 }
 
-void PlanBuilder::addSpread() {
-  if (!p_.has(PLD_FEATURE_DIFFUSION)) return;
-  PlannedPass& pass = addPass("spread", PLD_STAGE_LAYERS, "gl/spread_level.frag", resolveDefines(p_));
-  pass.part = PartOfFrame::pyramid;
-  read(pass, colour_, kBackgroundUnit, "background");
-  read(pass, planarZ_, kOpaqueZUnit, "opaqueZ");
-  if (!solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solid");
-  for (const PlacedPlane& plane : layers_)  // of the published tier all planes say what a pixel spreads by
-    if (p_.published() || plane.spec.sum == PlaneSum::refraction)
-      read(pass, plane.image, plane.spec.unit, plane.spec.name);
-  readPyramid(pass, PLD_LAYER_BEFORE);
-  for (std::size_t i = 0; i < pyramid_.size(); ++i)
-    pass.attachments.push_back(
-        {pyramid_[i], static_cast<uint32_t>(i), PLD_LAYER_OF_REPEAT, PLD_LOAD_ANY, kAllComponents, {}});
-  pass.numbers = {StageNumber::pictureSize, StageNumber::level, StageNumber::spreadLevels};
-}
-
-//   colour   of the background, where nothing shows another
-//   nearest  the depth of the nearest layer
-void PlanBuilder::readResolved(PlannedPass& pass, bool colour, bool nearest) const {
-  if (colour || p_.scatters()) read(pass, colour_, kBackgroundUnit, "background");
-  for (const PlacedPlane& plane : layers_)
-    if (plane.spec.sum != PlaneSum::nearestZ || nearest || p_.scatters())
-      read(pass, plane.image, plane.spec.unit, plane.spec.name);
-  for (const PlacedPlane& plane : over_) read(pass, plane.image, plane.spec.unit, plane.spec.name);
-  if (p_.scatters()) read(pass, planarZ_, kOpaqueZUnit, "opaqueZ");
-  if (!solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solid");
-  readPyramid(pass, PLD_LAYERS_ALL);
-  pass.numbers = {StageNumber::pictureSize};
-  if (!p_.scatters()) return;
-  pass.numbers.insert(pass.numbers.end(), {StageNumber::lookup, StageNumber::largestSpread});
-  if (pyramid_.empty()) return;
-  pass.numbers.push_back(StageNumber::spreadLevels);
-  pass.defines.emplace_back("SPREAD_LAYERS");
-}
-
-void PlanBuilder::addPicture() {
-  const std::vector<std::string> defines = resolveDefines(p_);
-  PlannedPass& pass = addPass("picture", PLD_STAGE_LAYERS, "gl/picture.frag", defines);
-  readResolved(pass, true, false);
-  attachWhole(pass, picture_);
-  if (!p_.outputs()) return;
-  for (const bool depth : {false, true}) {
-    PlannedPass& output = addPass(depth ? "nearest depth" : "reactive", PLD_STAGE_LAYERS, "gl/outputs.frag", defines);
-    readResolved(output, false, true);
-    output.numbers.push_back(StageNumber::view);
-    output.view = depth ? PLD_VIEW_NEAREST_DEPTH : PLD_VIEW_REACTIVE;
-    attachWhole(output, depth ? nearestDepth_ : reactive_);
-  }
-}
-
-RecipePlan recipePlan(const Permutation& permutation, pld_clip clip) {
-  PlanBuilder builder(permutation, clip);
+RecipePlan recipePlan(const Permutation& permutation, const PlanShape& shape) {
+  PlanBuilder builder(permutation, shape);
   builder.addImages();
   builder.addPlanarDepth();
   builder.addStages();
@@ -302,6 +171,7 @@ RecipePlan recipePlan(const Permutation& permutation, pld_clip clip) {
   builder.addLowResolution();
   builder.addSpread();
   builder.addPicture();
+  builder.addDebugViews();
   return builder.plan;
 }
 

@@ -1,61 +1,26 @@
 // Puts a recipe's plan together, stage by stage: see recipe_plan.h.
 #pragma once
-#include <string>
-#include <vector>
-
-#include "engine_bridge/c/recipe_plan.h"
+#include "engine_bridge/c/plan_resolve.h"
 
 namespace pellucid::c {
 
-class PlanBuilder {
+class PlanBuilder : public ResolvePlan {
  public:
-  PlanBuilder(const Permutation& permutation, pld_clip clip) : p_(permutation), clip_(clip) {}
+  using ResolvePlan::ResolvePlan;
 
-  RecipePlan plan;
-
-  void addImages();
-  // Each adds the passes that the permutation has of it, in this order.
+  // Each adds the passes that the permutation has of it, in this order; those of ResolvePlan come after.
   void addPlanarDepth();
   void addStages();  // solids, front, layers, rims
   void addRimsApplied();
   void addLowResolution();
-  void addSpread();
-  void addPicture();
 
  private:
-  // A plane and where it is.
-  struct PlacedPlane {
-    PlaneSpec spec;
-    uint32_t image;
-  };
-  using Planes = std::vector<PlacedPlane>;
-
-  uint32_t add(PlannedImage image);
-  uint32_t own(const char* name, pld_format format, PartOfFrame part = PartOfFrame::picture, uint32_t layers = 1);
-  Planes addPlanes(const std::vector<PlaneSpec>& specs, PartOfFrame part = PartOfFrame::picture,
-                   const char* prefix = "");
-  void addLowImages();
-
-  PlannedPass& addPass(const char* name, pld_stage stage, const char* file, std::vector<std::string> defines);
   void addStage(pld_stage stage, const char* name, const Planes& planes);
   void addFold(pld_stage stage, const char* name, const Planes& planes);
   void readSeam(PlannedPass& pass) const;
-  void readResolved(PlannedPass& pass, bool colour, bool nearest) const;
-  static void attach(PlannedPass& pass, const Planes& planes, pld_load load, bool blends);
-  static void attachWhole(PlannedPass& pass, uint32_t image, uint32_t location = 0);
-  static void read(PlannedPass& pass, uint32_t image, int binding, const std::string& sampler, int32_t layer = 0);
-  void readPyramid(PlannedPass& pass, int32_t layer) const;
-
-  const Permutation& p_;
-  pld_clip clip_;
-  uint32_t colour_ = PLD_NO_IMAGE, depth_ = PLD_NO_IMAGE, occlusion_ = PLD_NO_IMAGE, picture_ = PLD_NO_IMAGE,
-           reactive_ = PLD_NO_IMAGE, nearestDepth_ = PLD_NO_IMAGE, planarZ_ = PLD_NO_IMAGE, solidDepth_ = PLD_NO_IMAGE,
-           farthestZ_ = PLD_NO_IMAGE;
-  std::vector<uint32_t> texels_, pyramid_;
-  Planes solids_, front_, layers_, rims_, low_, over_;
 };
 
 // Of a permutation that is not refused.
-RecipePlan recipePlan(const Permutation& permutation, pld_clip clip);
+RecipePlan recipePlan(const Permutation& permutation, const PlanShape& shape);
 
 }  // namespace pellucid::c

@@ -6,8 +6,8 @@
 #include "engine_bridge/c/built_recipe.h"
 #include "engine_bridge/c/frame_numbers.h"
 #include "engine_bridge/c/pass_choices.h"
+#include "engine_bridge/c/plan_sizes.h"
 #include "engine_bridge/c/recipe_numbers.h"
-#include "engine_bridge/c/spread_layout.h"
 
 using namespace pellucid::c;
 
@@ -117,28 +117,6 @@ bool takeFrame(const pld_recipe& recipe, const pld_frame* frame, pld_frame& whol
   return !recipe.permutation.low() || whole.low_factor == 2 || whole.low_factor == 4 || whole.low_factor == 8;
 }
 
-uint32_t repeatsOf(const pld_recipe& recipe, uint32_t pass, const pld_frame& frame) {
-  const PlannedPass& planned = recipe.plan.passes[pass];
-  if (planned.part != PartOfFrame::pyramid) return 1;
-  return static_cast<uint32_t>(spreadLayout(frame.width, frame.height, kAtlasLayers).count);
-}
-
-void areaOf(const PlannedPass& pass, uint32_t repeat, const pld_frame& frame, int32_t area[4]) {
-  area[0] = area[1] = 0;
-  area[2] = frame.width;
-  area[3] = frame.height;
-  if (pass.part == PartOfFrame::low) {
-    area[2] /= frame.low_factor;
-    area[3] /= frame.low_factor;
-  } else if (pass.part == PartOfFrame::pyramid) {
-    const SpreadLayout layout = spreadLayout(frame.width, frame.height, kAtlasLayers);
-    const int32_t* level = layout.levels[repeat + 1];
-    area[1] = level[2];
-    area[2] = level[0];
-    area[3] = level[1];
-  }
-}
-
 template <class T>
 const T* at(const std::vector<T>& all, uint32_t index) {
   return index < all.size() ? &all[index] : nullptr;
@@ -200,22 +178,9 @@ pld_status pld_recipe_image_size(const pld_recipe* recipe, uint32_t image, int32
                                  int32_t size[2]) {
   if (!recipe || !size || image >= recipe->images.size()) return PLD_ERROR_ARGUMENT;
   if (!isSize(width, height)) return PLD_ERROR_SIZE;
-  size[0] = width;
-  size[1] = height;
-  switch (recipe->plan.images[image].part) {
-    case PartOfFrame::low:  // for factor 2, so that every factor has room
-      size[0] = (width + 1) / 2;
-      size[1] = (height + 1) / 2;
-      break;
-    case PartOfFrame::pyramid: {
-      const SpreadLayout layout = spreadLayout(width, height, kAtlasLayers);
-      size[0] = layout.width;
-      size[1] = layout.height;
-      break;
-    }
-    default:
-      break;
-  }
+  const PixelSize found = sizeOf(recipe->plan, recipe->plan.images[image], width, height);
+  size[0] = found.width;
+  size[1] = found.height;
   return PLD_OK;
 }
 
@@ -254,7 +219,7 @@ pld_status pld_recipe_repeats(const pld_recipe* recipe, uint32_t pass, const pld
   pld_frame whole{};
   if (!recipe || !repeats || pass >= recipe->passes.size() || !takeFrame(*recipe, frame, whole))
     return PLD_ERROR_ARGUMENT;
-  *repeats = repeatsOf(*recipe, pass, whole);
+  *repeats = repeatsOf(recipe->plan, recipe->plan.passes[pass], whole);
   return PLD_OK;
 }
 
@@ -262,28 +227,31 @@ pld_status pld_recipe_fill(const pld_recipe* recipe, uint32_t pass, uint32_t rep
                            int32_t width, void* constants, size_t size, int32_t area[4]) {
   pld_frame whole{};
   if (!recipe || !area || pass >= recipe->passes.size() || !takeFrame(*recipe, frame, whole)) return PLD_ERROR_ARGUMENT;
-  if (repeat >= repeatsOf(*recipe, pass, whole)) return PLD_ERROR_ARGUMENT;
   if (width < whole.width || width > kMostPixels) return PLD_ERROR_SIZE;
   const PlannedPass& planned = recipe->plan.passes[pass];
-  areaOf(planned, repeat, whole, area);
+  if (repeat >= repeatsOf(recipe->plan, planned, whole)) return PLD_ERROR_ARGUMENT;
+  const PassArea part = areaOf(recipe->plan, planned, repeat, whole);
+  area[0] = part.x;
+  area[1] = part.y;
+  area[2] = part.width;
+  area[3] = part.height;
   if (!constants) return PLD_OK;
   if (size < recipe->passes[pass].constants_size) return PLD_ERROR_SIZE;
-  const FrameNumbers numbers{recipe->permutation, whole, width, kAtlasLayers};
+  const FrameNumbers numbers{recipe->permutation, whole, width, recipe->plan.atlasLayers, planned.firstView};
   if (planned.kind == PLD_PASS_DRAWS) {
     float block[kSeamFloats];
     fillSeam(numbers, planned.part == PartOfFrame::low ? whole.low_factor : 1, block);
     std::memcpy(constants, block, sizeof(block));
   } else {
-    fillStage(numbers, planned, repeat, static_cast<std::byte*>(constants));
+    std::memset(constants, 0, recipe->passes[pass].constants_size);
+    fillStage(numbers, placesOf(planned.numbers), repeat, static_cast<std::byte*>(constants));
   }
   return PLD_OK;
 }
 
 pld_status pld_recipe_query(const pld_recipe* recipe, pld_value what, uint64_t* value) {
   if (!recipe || !value) return PLD_ERROR_ARGUMENT;
-  const std::vector<pellucid::PlaneSpec> planes = planesOf(recipe->permutation);
-  const auto bits = static_cast<uint64_t>(pellucid::bitsOf(planes));
-  return queryOf(recipe->permutation, bits, planes.size(), what, *value) ? PLD_OK : PLD_ERROR_ARGUMENT;
+  return queryOf(recipe->permutation, what, *value) ? PLD_OK : PLD_ERROR_ARGUMENT;
 }
 
 }  // extern "C"

@@ -14,7 +14,7 @@ struct NumberShape {
   const char* type;
   const char* name;
   std::size_t bytes, alignment;
-  const char* array = "";
+  int count = 1;  // of an array
 };
 
 NumberShape shapeOf(StageNumber number) {
@@ -43,7 +43,7 @@ NumberShape shapeOf(StageNumber number) {
     case StageNumber::largestSpread:
       return {"float", "largestSpread", 4, 4};
     case StageNumber::spreadLevels:
-      return {"ivec4", "spreadLevels", 16 * SpreadLayout::kLevels, 16, "[25]"};
+      return {"ivec4", "spreadLevels", 16 * SpreadLayout::kLevels, 16, SpreadLayout::kLevels};
     case StageNumber::rowLength:
       return {"int", "rowLength", 4, 4};
     case StageNumber::weight:
@@ -51,21 +51,6 @@ NumberShape shapeOf(StageNumber number) {
     default:
       return {"int", "view", 4, 4};
   }
-}
-static_assert(SpreadLayout::kLevels == 25);
-
-// Of each number and, at last, of the whole block.
-std::vector<std::size_t> offsetsOf(const std::vector<StageNumber>& stage) {
-  std::vector<std::size_t> offsets;
-  std::size_t end = 0;
-  for (const StageNumber number : stage) {
-    const NumberShape shape = shapeOf(number);
-    end = (end + shape.alignment - 1) / shape.alignment * shape.alignment;
-    offsets.push_back(end);
-    end += shape.bytes;
-  }
-  offsets.push_back((end + 15) / 16 * 16);
-  return offsets;
 }
 
 template <class T>
@@ -101,8 +86,7 @@ void fillLow(const pld_frame& frame, StageNumber number, std::byte* at) {
   }
 }
 
-void fillNumber(const FrameNumbers& numbers, const PlannedPass& pass, StageNumber number, uint32_t repeat,
-                std::byte* at) {
+void fillNumber(const FrameNumbers& numbers, StageNumber number, uint32_t repeat, std::byte* at) {
   const pld_frame& frame = numbers.frame;
   const float* projection = frame.projection;
   switch (number) {
@@ -126,7 +110,7 @@ void fillNumber(const FrameNumbers& numbers, const PlannedPass& pass, StageNumbe
     case StageNumber::weight:
       return put<float>(at, {frame.weight_near, frame.weight_far, frame.weight_exponent, referenceOf(frame)});
     case StageNumber::view:
-      return put<int32_t>(at, {pass.view});
+      return put<int32_t>(at, {numbers.view});
     default:
       return fillLow(frame, number, at);
   }
@@ -157,8 +141,21 @@ void fillSeam(const FrameNumbers& numbers, int pixelsATexel, float* block) {
   std::copy(std::begin(filled), std::end(filled), block);
 }
 
+std::vector<NumberPlace> placesOf(const std::vector<StageNumber>& stage) {
+  std::vector<NumberPlace> places;
+  std::size_t end = 0;
+  for (const StageNumber number : stage) {
+    const NumberShape shape = shapeOf(number);
+    end = (end + shape.alignment - 1) / shape.alignment * shape.alignment;
+    places.push_back({number, shape.name, shape.type, shape.count, end, shape.bytes});
+    end += shape.bytes;
+  }
+  return places;
+}
+
 std::size_t sizeOfStageBlock(const std::vector<StageNumber>& stage) {
-  return offsetsOf(stage).back();
+  const std::vector<NumberPlace> places = placesOf(stage);
+  return places.empty() ? 0 : (places.back().offset + places.back().bytes + 15) / 16 * 16;
 }
 
 std::string stageBlockText(const std::vector<StageNumber>& stage, const std::string& layout) {
@@ -166,16 +163,15 @@ std::string stageBlockText(const std::vector<StageNumber>& stage, const std::str
   std::string text = layout + " uniform " + kStageBlock + " {\n";
   for (const StageNumber number : stage) {
     const NumberShape shape = shapeOf(number);
-    text += std::string("  ") + shape.type + " " + shape.name + shape.array + ";\n";
+    text += std::string("  ") + shape.type + " " + shape.name;
+    if (shape.count > 1) text += "[" + std::to_string(shape.count) + "]";
+    text += ";\n";
   }
   return text + "};\n";
 }
 
-void fillStage(const FrameNumbers& numbers, const PlannedPass& pass, uint32_t repeat, std::byte* block) {
-  const std::vector<std::size_t> offsets = offsetsOf(pass.numbers);
-  std::memset(block, 0, offsets.back());
-  for (std::size_t i = 0; i < pass.numbers.size(); ++i)
-    fillNumber(numbers, pass, pass.numbers[i], repeat, block + offsets[i]);
+void fillStage(const FrameNumbers& numbers, const std::vector<NumberPlace>& places, uint32_t repeat, std::byte* block) {
+  for (const NumberPlace& place : places) fillNumber(numbers, place.number, repeat, block + place.offset);
 }
 
 }  // namespace pellucid::c

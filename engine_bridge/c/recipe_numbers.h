@@ -15,6 +15,7 @@ struct FrameNumbers {
   const pld_frame& frame;
   int width;        // of the largest picture
   int atlasLayers;  // of the spread pyramid
+  int view = 0;     // pld_view, where the pass shows one
 };
 
 // The block of shaders/gl/seam.glsl, PldFrame.
@@ -24,9 +25,19 @@ void fillSeam(const FrameNumbers& numbers, int pixelsATexel, float* block);
 
 // Of full-screen stages, in std140.
 constexpr const char* kStageBlock = "PldNumbers";
+// One number of the block.
+struct NumberPlace {
+  StageNumber number;
+  const char* name;
+  const char* type;  // in GLSL; of an array that of one
+  int count;         // of an array, else 1
+  std::size_t offset, bytes;
+};
+std::vector<NumberPlace> placesOf(const std::vector<StageNumber>& stage);
 std::size_t sizeOfStageBlock(const std::vector<StageNumber>& stage);
 // "<layout> uniform PldNumbers { ... };", empty where nothing is told.
 std::string stageBlockText(const std::vector<StageNumber>& stage, const std::string& layout);
-void fillStage(const FrameNumbers& numbers, const PlannedPass& pass, uint32_t repeat, std::byte* block);
+//   places  of the pass
+void fillStage(const FrameNumbers& numbers, const std::vector<NumberPlace>& places, uint32_t repeat, std::byte* block);
 
 }  // namespace pellucid::c

@@ -42,6 +42,8 @@ struct PlannedImage {
   std::array<float, 4> clear{};
 };
 
+constexpr uint32_t kAllComponents = 15;  // of pld_recipe_attachment.write_mask
+
 struct PlannedRead {
   uint32_t image;
   uint32_t binding;  // of draws: beside the first of the seam's
@@ -49,9 +51,14 @@ struct PlannedRead {
   int32_t layer = 0;
 };
 
+// When the GL pass runs a pass: as a stage begins, by the host between pld_begin() and pld_end(), as it ends, or in
+// pld_resolve().
+enum class Moment { begin, draws, end, resolve };
+
 struct PlannedPass {
   std::string name;
   pld_pass_kind kind = PLD_PASS_FULL_SCREEN;
+  Moment moment = Moment::end;
   PartOfFrame part = PartOfFrame::picture;  // that is drawn; of the pyramid one level each time
   std::vector<pld_recipe_attachment> attachments;
   std::vector<PlannedRead> reads;
@@ -61,25 +68,72 @@ struct PlannedPass {
   int lists = 0;  // storage blocks
   bool emptiesLists = false;
 
-  pld_stage stage = PLD_STAGE_LAYERS;  // of draws, and whose end other passes belong to
+  pld_stage stage = PLD_STAGE_LAYERS;  // of draws, and whose begin or end other passes belong to
   std::string file;                    // of others, below shaders/
   std::vector<std::string> defines;
   std::vector<StageNumber> numbers;
-  int view = 0;  // pld_view
+  int firstView = -1, lastView = -1;  // pld_view, of what pld_resolve() shows by it; -1: others read what it draws
+
+  bool shows(int view) const { return view >= firstView && view <= lastView; }
+};
+
+// What a plan depends on besides its permutation.
+struct PlanShape {
+  pld_clip clip = PLD_CLIP_MINUS_ONE_TO_ONE;
+  // Of the spread pyramid. 2: of odd and of even levels, so that no level is drawn to the image it reads; of one layer
+  // it is, and a barrier lies between the levels.
+  int atlasLayers = 2;
+  bool debugViews = false;  // PLD_FLAG_DEBUG_VIEWS
 };
 
 struct RecipePlan {
+  int atlasLayers = 2;
   std::vector<PlannedImage> images;
   std::vector<PlannedPass> passes;
 };
 
-constexpr int kAtlasLayers = 2;  // of the spread pyramid
+constexpr pld_format formatOf(PlaneFormat format) {
+  switch (format) {
+    case PlaneFormat::r16f:
+      return PLD_FORMAT_R16F;
+    case PlaneFormat::rg16f:
+      return PLD_FORMAT_RG16F;
+    case PlaneFormat::rgba16f:
+      return PLD_FORMAT_RGBA16F;
+    case PlaneFormat::r32f:
+      return PLD_FORMAT_R32F;
+    case PlaneFormat::rg32f:
+      return PLD_FORMAT_RG32F;
+    case PlaneFormat::rgba32f:
+      return PLD_FORMAT_RGBA32F;
+    case PlaneFormat::rgba8:
+      return PLD_FORMAT_RGBA8;
+    default:
+      return PLD_FORMAT_RG8_SNORM;
+  }
+}
 
-pld_format formatOf(PlaneFormat format);
 // Of a texel; 0 for the host's.
-int bitsOf(pld_format format);
-pld_blend blendOf(PlaneBlend blend);
+constexpr int bitsOf(pld_format format) {
+  constexpr int bits[] = {0, 16, 32, 64, 32, 64, 128, 32, 16, 32};
+  return bits[format];
+}
+
+constexpr pld_blend blendOf(PlaneBlend blend) {
+  constexpr pld_factor one = PLD_FACTOR_ONE;
+  switch (blend) {
+    case PlaneBlend::minimum:
+      return {1, one, one, PLD_BLEND_MINIMUM, one, one, PLD_BLEND_MINIMUM};
+    case PlaneBlend::alphaMinimum:
+      return {1, one, one, PLD_BLEND_ADD, one, one, PLD_BLEND_MINIMUM};
+    case PlaneBlend::product:
+      return {1, PLD_FACTOR_ZERO, PLD_FACTOR_ONE_MINUS_SOURCE_COLOUR, PLD_BLEND_ADD, one, one, PLD_BLEND_ADD};
+    default:
+      return {1, one, one, PLD_BLEND_ADD, one, one, PLD_BLEND_ADD};
+  }
+}
+
 // Names of the blocks of shaders/gl/exact_lists.glsl.
-extern const char* const kListNames[5];
+constexpr const char* kListNames[5] = {"PldLinks", "PldRadiances", "PldTransmissions", "PldOffsets", "PldDispersions"};
 
 }  // namespace pellucid::c

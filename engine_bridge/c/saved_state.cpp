@@ -172,7 +172,6 @@ void SavedState::restoreObjects(const GlFunctions& gl) const {
 
 void SavedState::restoreForDraws(const GlFunctions& gl) const {
   restoreShape(gl);
-  restoreUnit(gl, 0);
   restoreObjects(gl);
 }
 

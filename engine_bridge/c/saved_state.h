@@ -25,8 +25,8 @@ class SavedState {
   void save(const GlFunctions& gl, Units units, int uniformBinding, Storage storage = {});
   // Put back what save() saw; objects that the host has deleted since are left unbound.
   void restore(const GlFunctions& gl) const;
-  // What the host's own draws of a stage go by, after a draw of ours with one texture: culling, polygon mode, clipping,
-  // program, vertex array and unit 0.
+  // What the host's own draws of a stage go by, after a draw of ours: culling, polygon mode, clipping, program and
+  // vertex array.
   void restoreForDraws(const GlFunctions& gl) const;
   void restoreActiveUnit(const GlFunctions& gl) const;
 

@@ -11,6 +11,12 @@ uint32_t stagesOf(const Permutation& p) {
   return stages;
 }
 
+pld_stage firstStageOf(const Permutation& p) {
+  int stage = 0;
+  while (!(stagesOf(p) >> stage & 1u)) ++stage;
+  return static_cast<pld_stage>(stage);
+}
+
 Permutation lowPermutation(const Permutation& permutation) {
   Permutation low = permutation;
   low.atLowResolution = true;
@@ -30,13 +36,13 @@ ListSizes listSizes(int width, int height, uint64_t fragments) {
   return {4 * heads, 4 * (heads + fragments), 16 * fragments};
 }
 
-bool queryOf(const Permutation& p, uint64_t bits, uint64_t planes, pld_value what, uint64_t& value) {
+bool queryOf(const Permutation& p, pld_value what, uint64_t& value) {
   switch (what) {
     case PLD_VALUE_BITS_PER_PIXEL:
-      value = bits;
+      value = static_cast<uint64_t>(pellucid::bitsOf(planesOf(p)));
       return true;
     case PLD_VALUE_PLANES:
-      value = planes;
+      value = planesOf(p).size();
       return true;
     case PLD_VALUE_GEOMETRY_PASSES:
       value = 1u + (p.frontStage() ? 1u : 0u) + (p.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (p.rimsApart() ? 1u : 0u);

@@ -10,6 +10,7 @@ constexpr int kStages = 5;  // of pld_stage
 
 // Bits 1 << pld_stage.
 uint32_t stagesOf(const Permutation& permutation);
+pld_stage firstStageOf(const Permutation& permutation);
 // What a texel of PLD_STAGE_LOW keeps: nothing among its layers is solid or waits for its occlusion, and nearest depths
 // have a plane.
 Permutation lowPermutation(const Permutation& permutation);
@@ -23,7 +24,6 @@ ListSizes listSizes(int width, int height, uint64_t fragments);
 constexpr uint64_t kMostFragments = uint64_t{1} << 31;  // as far as shaders/gl/exact_output.glsl counts
 
 // PLD_VALUE_BITS_PER_PIXEL, _PLANES and _GEOMETRY_PASSES; false for other values.
-//   bits, planes  of the layers
-bool queryOf(const Permutation& permutation, uint64_t bits, uint64_t planes, pld_value what, uint64_t& value);
+bool queryOf(const Permutation& permutation, pld_value what, uint64_t& value);
 
 }  // namespace pellucid::c

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine_bridge/c/recipe_numbers.h"
+#include "engine_bridge/c/host_textures.h"
 #include "shaders/plane_defines.h"
 
 namespace pellucid::c {
@@ -21,190 +21,137 @@ void Stages::create() {
 
 std::string Stages::build() {
   const Permutation& p = device_.permutation;
-  std::string failure;
-  if (device_.gl.onProcessor && p.tier == PLD_TIER_FLOAT)
-    failure = emptyPlanes_.build(device_.gl, "gl/empty_planes.frag", emptyDefines(modelOf(p)));
-  if (failure.empty() && p.planarDepth())
-    failure = planarDepth_.build(device_.gl, "gl/planar_depth.frag", depthDefines(p.depth, device_.info.clip));
-  return failure;
+  if (!device_.gl.onProcessor || p.tier != PLD_TIER_FLOAT) return {};
+  return emptyPlanes_.build(device_.gl, "gl/empty_planes.frag", emptyDefines(modelOf(p)));
 }
 
 void Stages::destroy() {
   emptyPlanes_.destroy(device_.gl);
-  planarDepth_.destroy(device_.gl);
   if (uniforms_) device_.gl.DeleteBuffers(1, &uniforms_);
 }
 
-GLuint Stages::frameOf(pld_stage stage) const {
-  switch (stage) {
-    case PLD_STAGE_SOLIDS:
-      return planes_.solidFrame();
-    case PLD_STAGE_FRONT:
-      return planes_.frontFrame();
-    case PLD_STAGE_RIMS:
-      return rims_.frame();
-    case PLD_STAGE_LOW:
-      return low_.frame();
-    default:
-      return planes_.layersFrame();
-  }
+// The seam's, and what passes at the stage's end read from.
+Units Stages::units() const {
+  const int first = static_cast<int>(device_.info.texture_unit), end = first + device_.permutation.seamUnits(),
+            own = runner_.unitsAtEnd(stage_);
+  return own > 0 ? Units{0, std::max(end, own)} : Units{first, end - first};
 }
 
-const std::vector<Plane>& Stages::planesOf(pld_stage stage) const {
-  switch (stage) {
-    case PLD_STAGE_SOLIDS:
-      return planes_.solids();
-    case PLD_STAGE_FRONT:
-      return planes_.front();
-    case PLD_STAGE_RIMS:
-      return rims_.planes();
-    case PLD_STAGE_LOW:
-      return low_.planes();
-    default:
-      return planes_.layers();
-  }
-}
-
-// Unit 0 is used by the depth pass, the seam's units by the stage; rims are darkened from six, layers of low resolution
-// resolved from eleven.
-Units Stages::unitsOf(pld_stage stage) const {
-  const int ends = stage == PLD_STAGE_RIMS ? 6 : stage == PLD_STAGE_LOW ? 11 : 0;
-  return {0, std::max(static_cast<int>(device_.info.texture_unit) + device_.permutation.seamUnits(), ends)};
-}
-
-void Stages::setFrame(const pld_frame& frame, int width, int pixelsATexel) const {
+void Stages::setFrame() const {
   float block[kSeamFloats];
-  fillSeam({device_.permutation, frame, width, 1}, pixelsATexel, block);
+  fillSeam({device_.permutation, frame_, width_, plan_.atlasLayers}, stage_ == PLD_STAGE_LOW ? frame_.low_factor : 1,
+           block);
   device_.gl.BindBuffer(GL_UNIFORM_BUFFER, uniforms_);
   device_.gl.BufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(block), block);
-}
-
-void Stages::drawPlanarDepth(const pld_frame& frame) const {
-  const GlFunctions& gl = device_.gl;
-  setPlainDrawing(gl, frame.width, frame.height);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, planes_.planarFrame());
-  device_.bind(0, frame.depth_texture);
-  device_.use(planarDepth_);
-  const float* p = frame.projection;
-  gl.Uniform4f(planarDepth_.place(gl, "depthRows"), p[10], p[14], p[11], p[15]);
-  gl.Uniform1f(planarDepth_.place(gl, "metresPerUnit"), frame.metres_per_unit);
-  device_.drawEverywhere();
+  device_.gl.BindBufferBase(GL_UNIFORM_BUFFER, device_.info.uniform_binding, uniforms_);
 }
 
 // Where clearing is slower, the layers' planes are filled as a picture is. See empty_planes.frag
-void Stages::drawEmptyPlanes(const pld_frame& frame) const {
-  setPlainDrawing(device_.gl, frame.width, frame.height);
-  device_.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, planes_.layersFrame());
+void Stages::drawEmptyPlanes(const PlannedPass& draws) const {
+  setPlainDrawing(device_.gl, frame_.width, frame_.height);
+  runner_.bindFrame(draws);
   device_.use(emptyPlanes_);
   device_.drawEverywhere();
 }
 
-// The bound framebuffer's planes, empty.
-void Stages::clear() const {
-  const GlFunctions& gl = device_.gl;
-  const GLfloat infinitelyFar = 0.0f;
-  if (stage_ != PLD_STAGE_LAYERS || !emptyPlanes_.name) clearPlanes(gl, planesOf(stage_));
-  if (stage_ == PLD_STAGE_SOLIDS) {
-    gl.DepthMask(GL_TRUE);
-    gl.ClearBufferfv(GL_DEPTH, 0, &infinitelyFar);
-  }
-}
-
-void Stages::setBlends() const {
-  if (device_.permutation.exact()) {
-    room_.open();
-    return;
-  }
-  if (stage_ != PLD_STAGE_SOLIDS) setBlending(device_.gl, planesOf(stage_));
-}
-
-// Solids test against each other, layers of low resolution in their seam, all else against the host's depth.
-void Stages::setTests() const {
-  const bool solids = stage_ == PLD_STAGE_SOLIDS && !device_.permutation.exact();
-  if (!solids && !depthAttachment_) return;
-  device_.gl.Enable(GL_DEPTH_TEST);
-  device_.gl.DepthFunc(solids ? GL_GREATER : device_.permutation.depth == PLD_DEPTH_REVERSED ? GL_GEQUAL : GL_LEQUAL);
-}
-
-void Stages::bindSeam(GLuint occlusion) const {
-  const GLuint first = device_.info.texture_unit;
-  device_.bind(first, stage_ == PLD_STAGE_LOW ? low_.farZ() : planes_.planarZ());
-  device_.bind(first + 1, planes_.solid());
-  device_.bind(first + 2, planes_.frontZ());
-  if (device_.permutation.rimsInSeam()) device_.bind(first + 3, occlusion);
-  device_.gl.BindBufferBase(GL_UNIFORM_BUFFER, device_.info.uniform_binding, uniforms_);
-}
-
 // To the bound framebuffer. False, and nothing is attached, where the device cannot test against it.
-bool Stages::attachDepth(const pld_frame& frame) const {
+bool Stages::attachDepth(GLuint texture) const {
   if (!depthAttachment_) return true;
-  device_.gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, depthAttachment_, GL_TEXTURE_2D, frame.depth_texture, 0);
+  device_.gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, depthAttachment_, GL_TEXTURE_2D, texture, 0);
   if (device_.trusts() || device_.isComplete()) return true;
   device_.gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, depthAttachment_, GL_TEXTURE_2D, 0, 0);
   return false;
 }
 
-// Draws of the library's own that the host's come after. False where there is none; else what accumulation asks for is
-// set, but for the viewport.
-bool Stages::prepare(const pld_frame& frame, bool isFirst) {
-  const bool planar = isFirst && device_.permutation.planarDepth(), low = stage_ == PLD_STAGE_LOW,
-             empties = stage_ == PLD_STAGE_LAYERS && emptyPlanes_.name;
-  if (planar) drawPlanarDepth(frame);
-  if (low) low_.drawFarthestDepth(frame);
-  if (empties) drawEmptyPlanes(frame);
-  if (!planar && !low && !empties) return false;
-  device_.restoreForDraws();
-  device_.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frameOf(stage_));
-  return true;
+// Draws of the library's own that the host's come after; then all is set as accumulation asks for, the framebuffer is
+// bound and its planes are empty.
+void Stages::prepare(const PlannedPass& draws) {
+  const bool fills = stage_ == PLD_STAGE_LAYERS && emptyPlanes_.name;
+  bool drew = fills;
+  for (const PlannedPass& pass : plan_.passes) {
+    if (pass.moment != Moment::begin || pass.stage != stage_) continue;
+    runner_.run(pass);
+    drew = true;
+  }
+  if (fills) drawEmptyPlanes(draws);
+  const PassArea area = areaOf(plan_, draws, 0, frame_);
+  if (drew) {
+    device_.restoreForDraws();
+    runner_.bindFrame(draws);
+    setViewportTo(device_.gl, 0, 0, area.width, area.height);
+  } else {
+    setAccumulation(device_.gl, area.width, area.height);
+  }
+  if (!fills) runner_.clear(draws);
 }
 
 pld_status Stages::open(pld_stage stage, const pld_frame& frame, int width, GLenum attachment, bool isFirst) {
   const GlFunctions& gl = device_.gl;
-  depthAttachment_ = stage == PLD_STAGE_SOLIDS || stage == PLD_STAGE_LOW ? 0 : attachment;
-  device_.save(unitsOf(stage), static_cast<int>(device_.info.uniform_binding), room_.storage());
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frameOf(stage));
-  if (!attachDepth(frame)) {
+  const PlannedPass& draws = runner_.drawsOf(stage);
+  const bool testsHost = draws.depthImage != PLD_NO_IMAGE && !draws.writesDepth;
+  stage_ = stage;
+  depthAttachment_ = testsHost ? attachment : 0;
+  device_.save(units(), static_cast<int>(device_.info.uniform_binding), room_.storage());
+  runner_.bindFrame(draws);
+  if (!attachDepth(frame.depth_texture)) {
     device_.restore();
     return device_.fail(PLD_ERROR_FORMAT, "pld_begin: this device cannot test against depth_texture %u",
                         frame.depth_texture);
   }
-  stage_ = stage;
   frame_ = frame;
+  width_ = width;
   device_.pushGroup(kNames[stage]);
   if (isFirst) {
     device_.timers.nextFrame();
     room_.beginFrame();
   }
   device_.timers.mark(gl, Timers::markOf(stage, 0));
-  const int pixelsATexel = stage == PLD_STAGE_LOW ? frame.low_factor : 1;
-  setFrame(frame, width, pixelsATexel);
-  const int wide = frame.width / pixelsATexel, high = frame.height / pixelsATexel;
-  if (prepare(frame, isFirst))
-    setViewportTo(gl, 0, 0, wide, high);
+  setFrame();
+  runner_.begin(frame, width);
+  prepare(draws);
+  if (draws.emptiesLists)
+    room_.open();
   else
-    setAccumulation(gl, wide, high);
-  if (!device_.permutation.exact()) clear();
-  setBlends();
-  setTests();
-  bindSeam(frame.occlusion_texture);
+    runner_.setBlending(draws);
+  runner_.setTests(draws);
+  runner_.bindSeam(draws);
   device_.restoreActiveUnit();
   device_.timers.mark(gl, Timers::markOf(stage, 1));
   return PLD_OK;
 }
 
+pld_status Stages::checkOcclusion(const PlannedPass& pass) {
+  TextureFacts facts;
+  if (device_.trusts() || !runner_.reads(pass, PLD_ROLE_OCCLUSION)) return PLD_OK;
+  if (factsOf(device_.gl, frame_.occlusion_texture, facts) && facts.width >= frame_.width &&
+      facts.height >= frame_.height)
+    return PLD_OK;
+  return device_.fail(PLD_ERROR_TEXTURE, "pld_end: occlusion_texture %u is no longer what pld_begin saw",
+                      frame_.occlusion_texture);
+}
+
+// The passes of the stage's end, in the plan's order.
+pld_status Stages::finish(bool& whole) {
+  whole = true;
+  runner_.begin(frame_, width_);
+  for (const PlannedPass& pass : plan_.passes) {
+    if (pass.moment != Moment::end || pass.stage != stage_) continue;
+    if (const pld_status status = checkOcclusion(pass); status != PLD_OK) return status;
+    if (pass.lists > 0) room_.show();
+    runner_.run(pass);
+    if (pass.lists == 0) continue;
+    const pld_status status = room_.count();
+    whole = status == PLD_OK;
+    if (!whole) return status;
+  }
+  return PLD_OK;
+}
+
 pld_status Stages::close(bool& whole) {
-  const GlFunctions& gl = device_.gl;
   device_.markDrawn();
-  if (depthAttachment_) device_.attach(frameOf(stage_), depthAttachment_, 0);
-  const int pixelsATexel = stage_ == PLD_STAGE_LOW ? frame_.low_factor : 1;
-  pld_status status = PLD_OK;
-  if (device_.permutation.exact())
-    status = room_.fold(stage_, frameOf(stage_), frame_.width / pixelsATexel, frame_.height / pixelsATexel, frame_,
-                        stage_ == PLD_STAGE_LAYERS ? planes_.solid() : 0);
-  whole = status == PLD_OK;
-  if (whole && stage_ == PLD_STAGE_RIMS) status = rims_.darken(frame_);
-  if (whole && stage_ == PLD_STAGE_LOW) low_.addToLayers(frame_);
-  device_.timers.mark(gl, Timers::markOf(stage_, 2));
+  if (depthAttachment_) device_.attach(textures_.frame(runner_.drawsOf(stage_)), depthAttachment_, 0);
+  const pld_status status = finish(whole);
+  device_.timers.mark(device_.gl, Timers::markOf(stage_, 2));
   device_.restore();
   device_.popGroup();
   return status;

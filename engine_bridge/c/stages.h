@@ -1,16 +1,15 @@
-// A stage between pld_begin() and pld_end(): what it is drawn to and by which state, and what its end makes of it.
+// A stage between pld_begin() and pld_end(): what the plan draws before the host, what the host draws to and by which
+// state, and what the plan makes of it.
 #pragma once
 #include "engine_bridge/c/fragment_room.h"
-#include "engine_bridge/c/low_stage.h"
-#include "engine_bridge/c/plane_set.h"
-#include "engine_bridge/c/rim_stage.h"
+#include "engine_bridge/c/plan_runner.h"
 
 namespace pellucid::c {
 
 class Stages {
  public:
-  Stages(Device& device, PlaneSet& planes, RimStage& rims, LowStage& low, FragmentRoom& room)
-      : device_(device), planes_(planes), rims_(rims), low_(low), room_(room) {}
+  Stages(Device& device, const RecipePlan& plan, const PlanTextures& textures, PlanRunner& runner, FragmentRoom& room)
+      : device_(device), plan_(plan), textures_(textures), runner_(runner), room_(room) {}
 
   void create();
   std::string build();  // empty, else the driver's words
@@ -27,28 +26,24 @@ class Stages {
   const pld_frame& frame() const { return frame_; }  // of the newest stage
 
  private:
-  GLuint frameOf(pld_stage stage) const;
-  const std::vector<Plane>& planesOf(pld_stage stage) const;
-  Units unitsOf(pld_stage stage) const;
-  bool attachDepth(const pld_frame& frame) const;
-  bool prepare(const pld_frame& frame, bool isFirst);
-  void setFrame(const pld_frame& frame, int width, int pixelsATexel) const;
-  void drawPlanarDepth(const pld_frame& frame) const;
-  void drawEmptyPlanes(const pld_frame& frame) const;
-  void clear() const;
-  void setBlends() const;
-  void setTests() const;
-  void bindSeam(GLuint occlusion) const;
+  Units units() const;
+  bool attachDepth(GLuint texture) const;
+  void prepare(const PlannedPass& draws);
+  void setFrame() const;
+  void drawEmptyPlanes(const PlannedPass& draws) const;
+  pld_status finish(bool& whole);
+  pld_status checkOcclusion(const PlannedPass& pass);
 
   Device& device_;
-  PlaneSet& planes_;
-  RimStage& rims_;
-  LowStage& low_;
+  const RecipePlan& plan_;
+  const PlanTextures& textures_;
+  PlanRunner& runner_;
   FragmentRoom& room_;
-  Program emptyPlanes_, planarDepth_;
+  Program emptyPlanes_;
   GLuint uniforms_ = 0;
   pld_stage stage_ = PLD_STAGE_LAYERS;
   pld_frame frame_{};
+  int width_ = 0;
   GLenum depthAttachment_ = 0;
 };
 

@@ -3,24 +3,22 @@
 #include "engine_bridge/c/host_textures.h"
 
 namespace pellucid::c {
+namespace {
 
-std::string Views::build() {
-  const std::vector<std::string> defines = resolveDefines(device_.permutation);
-  std::string failure = picture_.build(device_.gl, "gl/picture.frag", defines);
-  if (failure.empty() && device_.permutation.outputs())
-    failure = outputs_.build(device_.gl, "gl/outputs.frag", defines);
-  if (!failure.empty() || !(device_.info.flags & PLD_FLAG_DEBUG_VIEWS)) return failure;
-  failure = view_.build(device_.gl, "gl/view.frag", defines);
-  if (failure.empty()) failure = rims_.buildView();
-  if (failure.empty()) failure = low_.buildView();
-  return failure;
+bool readsOf(const PlannedPass& pass, const PlannedPass& other) {
+  for (const PlannedRead& read : pass.reads)
+    for (const pld_recipe_attachment& one : other.attachments)
+      if (read.image == one.image) return true;
+  return false;
 }
 
-void Views::destroy() {
-  picture_.destroy(device_.gl);
-  view_.destroy(device_.gl);
-  outputs_.destroy(device_.gl);
-  target_.destroy();
+}  // namespace
+
+// Null for a view of what this pass does not keep.
+const PlannedPass* Views::passOf(pld_view view) const {
+  for (const PlannedPass& pass : plan_.passes)
+    if (pass.shows(view)) return &pass;
+  return nullptr;
 }
 
 pld_status Views::check(const pld_target& target, const pld_frame& frame) {
@@ -35,7 +33,7 @@ pld_status Views::check(const pld_target& target, const pld_frame& frame) {
   if (target.view != PLD_VIEW_PICTURE && !(device_.info.flags & PLD_FLAG_DEBUG_VIEWS))
     return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: views need PLD_FLAG_DEBUG_VIEWS");
   const bool rims = isOfRims(target.view);
-  if ((rims && !device_.permutation.rimsApart()) || (isOfLow(target.view) && !device_.permutation.low()))
+  if (!isOfShadows(target.view) && !passOf(target.view))
     return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: view %d needs %s", static_cast<int>(target.view),
                         rims ? "PLD_FEATURE_RIMS and a stage of rims" : "PLD_FEATURE_LOW_RESOLUTION");
   TextureFacts open;
@@ -46,41 +44,17 @@ pld_status Views::check(const pld_target& target, const pld_frame& frame) {
   return PLD_OK;
 }
 
-Units Views::units() const {
-  const Permutation& p = device_.permutation;
-  const bool views = p.rimsApart() && (device_.info.flags & PLD_FLAG_DEBUG_VIEWS);
-  return {0, p.scatters() || p.lowOver() || views ? kLookupUnits : kSpreadUnit};
+// What it reads of the same moment is drawn before it.
+void Views::draw(const PlannedPass& pass, const pld_target& target) {
+  for (const PlannedPass& other : plan_.passes) {
+    if (other.moment != Moment::resolve || other.lastView >= 0 || !readsOf(pass, other)) continue;
+    runner_.run(other);
+    target_.bindAgain(target);
+  }
+  runner_.run(pass, target.view);
 }
 
-void Views::bindPlanes(GLuint background) const {
-  device_.bind(kBackgroundUnit, background);
-  c::bindPlanes(device_, planes_.layers());
-  if (planes_.planarZ()) device_.bind(kOpaqueZUnit, planes_.planarZ());
-  if (planes_.solid()) device_.bind(kSolidUnit, planes_.solid());
-  low_.bindOver();
-}
-
-// The pyramid that the background is spread by, from the planes that are bound.
-void Views::drawSpread(const pld_target& target, const pld_frame& frame) {
-  spread_.bind();
-  device_.allowColours(1, true);
-  spread_.draw(frame.width, frame.height);
-  setViewportTo(device_.gl, 0, 0, frame.width, frame.height);
-  device_.allowColours(1, false);
-  target_.bindAgain(target);
-}
-
-void Views::drawSums(pld_view view, const pld_frame& frame) const {
-  const GlFunctions& gl = device_.gl;
-  const Program& program = view == PLD_VIEW_PICTURE ? picture_ : isOutput(view) ? outputs_ : view_;
-  device_.use(program);
-  gl.Uniform2i(program.place(gl, "pictureSize"), frame.width, frame.height);
-  gl.Uniform1i(program.place(gl, "view"), static_cast<GLint>(view));
-  spread_.setUniforms(program, frame.width, frame.height);
-  device_.drawEverywhere();
-}
-
-pld_status Views::resolve(const pld_target& target, const pld_frame& frame) {
+pld_status Views::resolve(const pld_target& target, const pld_frame& frame, int width) {
   const GlFunctions& gl = device_.gl;
   TextureFacts colour;
   if (!device_.trusts() &&
@@ -90,24 +64,15 @@ pld_status Views::resolve(const pld_target& target, const pld_frame& frame) {
   if (const pld_status status = target_.check(target, frame.width, frame.height, frame.colour_texture);
       status != PLD_OK)
     return status;
-  device_.save(units(), -1);
+  device_.save({0, runner_.unitsOfResolve()}, -1);
   if (const pld_status status = target_.bind(target, frame.colour_texture); status != PLD_OK) {
     device_.restore();
     return status;
   }
   device_.pushGroup("pellucid resolve");
   device_.timers.mark(gl, Timers::kResolve);
-  setPlainDrawing(gl, frame.width, frame.height);
-  device_.allowColours(1, false);
-  bindPlanes(frame.colour_texture);
-  if (isOfRims(target.view)) {
-    rims_.drawView(target.view, frame);
-  } else if (isOfLow(target.view)) {
-    low_.drawView(target.view, frame);
-  } else {
-    if (spread_.exist()) drawSpread(target, frame);
-    drawSums(target.view, frame);
-  }
+  runner_.begin(frame, width);
+  draw(*passOf(target.view), target);
   device_.looked = true;
   target_.unbind(target);
   device_.restore();

@@ -2,50 +2,35 @@
 #pragma once
 #include "engine_bridge/c/caster_maps.h"
 #include "engine_bridge/c/host_target.h"
-#include "engine_bridge/c/low_stage.h"
-#include "engine_bridge/c/plane_set.h"
-#include "engine_bridge/c/rim_stage.h"
-#include "engine_bridge/c/spread_levels.h"
+#include "engine_bridge/c/plan_runner.h"
 
 namespace pellucid::c {
 
 class Views {
  public:
-  Views(Device& device, const PlaneSet& planes, RimStage& rims, LowStage& low, SpreadLevels& spread,
-        CasterMaps& casters)
-      : device_(device),
-        planes_(planes),
-        rims_(rims),
-        low_(low),
-        spread_(spread),
-        casters_(casters),
-        target_(device, planes) {}
+  Views(Device& device, const RecipePlan& plan, const PlanTextures& textures, PlanRunner& runner, CasterMaps& casters)
+      : device_(device), plan_(plan), runner_(runner), casters_(casters), target_(device, textures) {}
 
   void create() { target_.create(); }
-  std::string build();  // empty, else the driver's words
-  void destroy();
+  void destroy() { target_.destroy(); }
 
   // Whether this pass has the view that is asked for.
   pld_status check(const pld_target& target, const pld_frame& frame);
   // Of a frame whose stages are drawn. After check().
-  pld_status resolve(const pld_target& target, const pld_frame& frame);
+  //   width  of the largest picture
+  pld_status resolve(const pld_target& target, const pld_frame& frame, int width);
   // Of a face of the shadow maps. After check().
   pld_status resolveFace(const pld_target& target);
 
  private:
-  Units units() const;
-  void bindPlanes(GLuint background) const;
-  void drawSpread(const pld_target& target, const pld_frame& frame);
-  void drawSums(pld_view view, const pld_frame& frame) const;
+  const PlannedPass* passOf(pld_view view) const;
+  void draw(const PlannedPass& pass, const pld_target& target);
 
   Device& device_;
-  const PlaneSet& planes_;
-  RimStage& rims_;
-  LowStage& low_;
-  SpreadLevels& spread_;
+  const RecipePlan& plan_;
+  PlanRunner& runner_;
   CasterMaps& casters_;
   HostTarget target_;
-  Program picture_, view_, outputs_;
 };
 
 }  // namespace pellucid::c

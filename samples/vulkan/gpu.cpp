@@ -141,7 +141,8 @@ vk::DescriptorSetLayout Gpu::setLayout(const std::vector<Binding>& bindings) {
 }
 
 vk::PipelineLayout Gpu::pipelineLayout(const std::vector<vk::DescriptorSetLayout>& sets) {
-  return *layouts_.emplace_back(device_->createPipelineLayoutUnique({{}, sets}));
+  const vk::PushConstantRange pushed(vk::ShaderStageFlagBits::eAllGraphics, 0, kPushedBytes);
+  return *layouts_.emplace_back(device_->createPipelineLayoutUnique({{}, sets, pushed}));
 }
 
 vk::UniqueShaderModule Gpu::compile(const std::string& text, bool vertex) {

@@ -9,6 +9,8 @@
 
 namespace engine {
 
+constexpr uint32_t kPushedBytes = 128;  // that every pipeline takes, and every device has
+
 struct GpuImage {
   vk::Image image;
   vk::Format format = vk::Format::eUndefined;

@@ -25,37 +25,25 @@ constexpr char kHead[] = "#version 450\n";
 
 // Of set 0, for all that the engine draws.
 constexpr char kSet[] = R"(
-struct MeshNumbers { mat4 viewFromObject; mat4 normalFromObject; vec4 base; vec4 surfaceValues; ivec4 kinds; };
-layout(std140, set = 0, binding = 0) uniform SceneNumbers { mat4 clipFromView; vec4 toSun4, sun4, ambient4; };
-layout(std430, set = 0, binding = 1) readonly buffer Meshes { MeshNumbers meshes[]; };
-#define toSun toSun4.xyz
-#define sun sun4.xyz
-#define ambient ambient4.xyz
+layout(std140, set = 0, binding = 0) uniform SceneNumbers { mat4 clipFromView; vec3 toSun, sun, ambient; };
+layout(push_constant) uniform MeshNumbers { mat4 viewFromObject; vec4 base, surfaceValues; ivec4 kinds; };
 )";
 constexpr char kVertexHead[] = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 0) out vec3 viewPosition;
 layout(location = 1) out vec3 viewNormal;
-layout(location = 2) flat out int meshNumber;
-#define viewFromObject meshes[gl_InstanceIndex].viewFromObject
-#define normalFromObject mat3(meshes[gl_InstanceIndex].normalFromObject)
-#define main meshMain
+#define normalFromObject transpose(inverse(mat3(viewFromObject)))
 )";
-constexpr char kVertexTail[] = "\n#undef main\nvoid main() { meshMain(), meshNumber = gl_InstanceIndex; }\n";
 constexpr char kFragmentHead[] = R"(
 layout(location = 0) in vec3 viewPosition;
 layout(location = 1) in vec3 viewNormal;
-layout(location = 2) flat in int meshNumber;
-#define base meshes[meshNumber].base
-#define surfaceValues meshes[meshNumber].surfaceValues
-#define kinds meshes[meshNumber].kinds
 )";
 constexpr char kGBufferHead[] = "layout(location = 0) out vec4 albedo;\nlayout(location = 1) out vec4 normal;\n";
 constexpr char kLightHead[] = R"(
-layout(set = 0, binding = 2) uniform sampler2D albedo;
-layout(set = 0, binding = 3) uniform sampler2D normal;
-layout(set = 0, binding = 4) uniform sampler2D depth;
+layout(set = 0, binding = 1) uniform sampler2D albedo;
+layout(set = 0, binding = 2) uniform sampler2D normal;
+layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(location = 0) out vec4 lit;
 )";
 constexpr char kFullscreen[] =
@@ -68,7 +56,7 @@ struct SceneNumbers {
   glm::vec4 toSun, sun, ambient;
 };
 struct MeshNumbers {
-  glm::mat4 viewFromObject, normalFromObject;
+  glm::mat4 viewFromObject;
   glm::vec4 base, surfaceValues;
   glm::ivec4 kinds;
 };
@@ -135,17 +123,14 @@ class VulkanEngine {
   }
 
  private:
-  static std::string meshVertex() { return kHead + std::string(kSet) + kVertexHead + kMeshBody + kVertexTail; }
+  static std::string meshVertex() { return kHead + std::string(kSet) + kVertexHead + kMeshBody; }
 
   void upload() {
     std::vector<Vertex> vertices;
     std::vector<uint32_t> indices;
-    std::vector<MeshNumbers> numbers;
     for (const Mesh& mesh : scene_.meshes) {
-      const glm::mat4 place = scene_.viewFromWorld * mesh.worldFromObject;
       const Material& material = mesh.material;
-      numbers.push_back({place,
-                         glm::mat4(glm::transpose(glm::inverse(glm::mat3(place)))),
+      meshes_.push_back({scene_.viewFromWorld * mesh.worldFromObject,
                          material.base,
                          {material.roughness, material.transmission, material.ior, material.thickness},
                          {material.unlit, material.thickness > 0.0f, 0, 0}});
@@ -160,7 +145,6 @@ class VulkanEngine {
     };
     vertices_ = filled(vertices, vk::BufferUsageFlagBits::eVertexBuffer);
     indices_ = filled(indices, vk::BufferUsageFlagBits::eIndexBuffer);
-    meshes_ = filled(numbers, vk::BufferUsageFlagBits::eStorageBuffer);
     const glm::vec3 toSun = glm::normalize(glm::mat3(scene_.viewFromWorld) * scene_.toSun);
     numbers_ = filled(std::array{SceneNumbers{clipFromView(scene_, width_, height_), glm::vec4(toSun, 0.0f),
                                               glm::vec4(scene_.sun, 0.0f), glm::vec4(kAmbient, 0.0f)}},
@@ -169,8 +153,7 @@ class VulkanEngine {
 
   void makeSet() {
     using Type = vk::DescriptorType;
-    std::vector<Binding> bindings = {{0, Type::eUniformBuffer, {}, {numbers_.buffer, 0, VK_WHOLE_SIZE}},
-                                     {1, Type::eStorageBuffer, {}, {meshes_.buffer, 0, VK_WHOLE_SIZE}}};
+    std::vector<Binding> bindings = {{0, Type::eUniformBuffer, {}, {numbers_.buffer, 0, VK_WHOLE_SIZE}}};
     for (const GpuImage* image : {&albedo_, &normal_, &depth_})
       bindings.push_back({static_cast<uint32_t>(bindings.size()), Type::eCombinedImageSampler, image->whole, {}});
     setLayout_ = gpu_.setLayout(bindings);
@@ -210,7 +193,8 @@ class VulkanEngine {
       const Mesh& mesh = scene_.meshes[i];
       if (mesh.material.transparent() != transparent) continue;
       commands.setCullMode(mesh.material.bothSides ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack);
-      commands.drawIndexed(static_cast<uint32_t>(mesh.indices.size()), 1, starts_[i].first, starts_[i].second, i);
+      commands.pushConstants<MeshNumbers>(layout, vk::ShaderStageFlagBits::eAllGraphics, 0, meshes_[i]);
+      commands.drawIndexed(static_cast<uint32_t>(mesh.indices.size()), 1, starts_[i].first, starts_[i].second, 0);
     }
   }
 
@@ -219,7 +203,8 @@ class VulkanEngine {
   int width_, height_;
   bool down_;
   GpuImage albedo_, normal_, lit_, depth_, frame_;
-  GpuBuffer vertices_, indices_, meshes_, numbers_;
+  GpuBuffer vertices_, indices_, numbers_;
+  std::vector<MeshNumbers> meshes_;
   std::vector<std::pair<uint32_t, int32_t>> starts_;  // of meshes: in indices and in vertices
   vk::DescriptorSetLayout setLayout_;
   vk::PipelineLayout layout_;

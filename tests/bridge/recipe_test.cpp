@@ -15,6 +15,11 @@
 
 #include "tests/bridge/host.h"
 #include "tests/support/recipes.h"
+// After epoxy, which declares the same.
+#include "engine_bridge/c/plan_words.h"
+#include "engine_bridge/c/recipe_plan.h"
+#include "engine_bridge/c/word_template.h"
+#include "engine_bridge/gl/plane_formats.h"
 
 namespace pellucid::test {
 namespace {
@@ -136,13 +141,29 @@ TEST(BridgeRecipe, EightThreadsMakeTheSame) {
     }
     return all;
   };
-  const std::vector<uint64_t> alone = hashes();
-  EXPECT_GT(alone.size(), 25u);
+  // First, so that what recipes share is made by all threads at once.
   std::array<std::vector<uint64_t>, 8> together;
   std::vector<std::thread> threads;
   for (std::vector<uint64_t>& one : together) threads.emplace_back([&one, &hashes] { one = hashes(); });
   for (std::thread& thread : threads) thread.join();
+  const std::vector<uint64_t> alone = hashes();
+  EXPECT_GT(alone.size(), 25u);
   for (const std::vector<uint64_t>& one : together) EXPECT_EQ(one, alone);
+}
+
+TEST(BridgeRecipe, ATextThatIsReadOnceIsWrittenLikeOneThatIsReadEachTime) {
+  const std::string text = "layout(binding = 3) precise float binding;  // a binding\nfloat x = binding * 0x1f;\n";
+  const c::WordTemplate once(text, [](std::string_view word) { return word == "binding" || word == "precise"; });
+  for (const std::string set : {"", "set = 0, ", "set = 12, "}) {
+    const auto change = [&](std::string_view word, std::string& out) {
+      if (word == "binding") out += set;
+      if (word != "precise" || set.empty()) out += word;
+    };
+    std::string written = "before ";
+    once.write(written, change);
+    EXPECT_EQ(written, "before " + c::withWords(text, change));
+    EXPECT_EQ(written.find("12, binding * 0x1f") != std::string::npos, set.size() > 9) << written;
+  }
 }
 
 std::string refusal(const pld_recipe_info& info) {
@@ -272,6 +293,27 @@ TEST(BridgeRecipe, LevelsOfThePyramidLieApart) {
     return;
   }
   FAIL() << "no pass of the pyramid";
+}
+
+// Formats and blends go to GL by pld_format and pld_blend in the C library, and straight in the rooms: by the same
+// words.
+TEST(BridgeRecipe, PlanesHaveTheWordsOfTheRooms) {
+  for (int i = 0; i <= static_cast<int>(PlaneFormat::rg8snorm); ++i) {
+    const auto format = static_cast<PlaneFormat>(i);
+    EXPECT_EQ(c::wordOf(c::formatOf(format)), gl::formatOf(format)) << i;
+    EXPECT_EQ(c::bitsOf(c::formatOf(format)), pellucid::bitsOf(format)) << i;
+  }
+  for (int i = 0; i <= static_cast<int>(PlaneBlend::product); ++i) {
+    const gl::BlendWords rooms = gl::blendOf(static_cast<PlaneBlend>(i));
+    const pld_blend blend = c::blendOf(static_cast<PlaneBlend>(i));
+    EXPECT_EQ(blend.enabled, 1);
+    EXPECT_EQ(c::wordOf(blend.source), rooms.source) << i;
+    EXPECT_EQ(c::wordOf(blend.destination), rooms.destination) << i;
+    EXPECT_EQ(c::wordOf(blend.op), rooms.equation) << i;
+    EXPECT_EQ(c::wordOf(blend.alpha_source), static_cast<GLenum>(GL_ONE)) << i;
+    EXPECT_EQ(c::wordOf(blend.alpha_destination), static_cast<GLenum>(GL_ONE)) << i;
+    EXPECT_EQ(c::wordOf(blend.alpha_op), rooms.alphaEquation) << i;
+  }
 }
 
 // The GL pass holds the recipe's seams, and as many bits; its textures are the recipe's images.

@@ -1,0 +1,20 @@
+// How many pixels the images and passes of a plan have, and how often a pass runs.
+#pragma once
+#include "engine_bridge/c/recipe_plan.h"
+
+namespace pellucid::c {
+
+struct PixelSize {
+  int width, height;
+};
+// For pictures up to width x height.
+PixelSize sizeOf(const RecipePlan& plan, const PlannedImage& image, int width, int height);
+
+// Of a frame.
+uint32_t repeatsOf(const RecipePlan& plan, const PlannedPass& pass, const pld_frame& frame);
+struct PassArea {
+  int x, y, width, height;
+};
+PassArea areaOf(const RecipePlan& plan, const PlannedPass& pass, uint32_t repeat, const pld_frame& frame);
+
+}  // namespace pellucid::c
