@@ -286,6 +286,17 @@ GBuffer readBackground(const PlanesRequest& request, const PassPlanes& first, Re
   return gbuffer;
 }
 
+std::vector<ExtraLayer> planeLayers(const PlanesRequest& request, const std::vector<PassPlanes>& passes,
+                                    Journal& journal) {
+  if (!wantsPlanes(request.layers)) return {};
+  if (passes.size() > 1)
+    journal.note(
+        fmt::format("--layers: D, delta, weight and count are those of the first of {} passes, beside the pixels' "
+                    "centres",
+                    passes.size()));
+  return {planeLayer(request.layers, passes[0].planes)};
+}
+
 }  // namespace
 
 ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
@@ -301,15 +312,7 @@ ResolvedPlanes resolvePlanes(const PlanesRequest& request, Journal& journal) {
   const ResolveSettings settings = settingsOf(request, passes[0].planes);
   Device device(-1);
   ResolvePass* resolver = resolverFor(request, settings, result.info.method, deep != nullptr, device, journal);
-  std::vector<ExtraLayer> ofPlanes;
-  if (wantsPlanes(request.layers)) {
-    ofPlanes.push_back(planeLayer(request.layers, passes[0].planes));
-    if (passes.size() > 1)
-      journal.note(
-          fmt::format("--layers: D, delta, weight and count are those of the first of {} passes, beside the "
-                      "pixels' centres",
-                      passes.size()));
-  }
+  const std::vector<ExtraLayer> ofPlanes = planeLayers(request, passes, journal);
   const std::vector<EdgePixel> pixels = journal.time("edges", [&] { return edgesOf(passes, result.opaque.gbuffer); });
   const std::unique_ptr<EdgePasses> edges = dealt(pixels, passes);
   const bool wantsUnseen = asks(request.layers, LayerName::unseen);
