@@ -75,7 +75,11 @@ bool SurfaceSides::apart(int x, int y, int u, int v) const {
   const int dx = u - x, dy = v - y;
   const std::optional<Bends> from = bendsOf(x, y, dx, dy), back = bendsOf(u, v, -dx, -dy);
   if ((from && from->steepens()) || (back && back->steepens())) return false;
-  return !(from && back && from->goesOn() && back->goesOn());
+  // Where the picture ends before two pixels, the other end tells alone.
+  const auto goesOn = [&](const std::optional<Bends>& bends, int fromX, int fromY, int stepX, int stepY) {
+    return bends ? bends->goesOn() : !inside(fromX - 2 * stepX, fromY - 2 * stepY);
+  };
+  return !((from || back) && goesOn(from, x, y, dx, dy) && goesOn(back, u, v, -dx, -dy));
 }
 
 // Of the step from a pixel to a neighbour and the two before it. Nothing where something was not hit.

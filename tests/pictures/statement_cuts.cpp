@@ -80,7 +80,7 @@ void Statements::eachCut(const Column& column, const Face& face, double nearest,
 
 void Statements::eachPartly(const Column& more, const Column& fewer,
                             const std::function<void(const Column&)>& take) const {
-  for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {
+  for (double part = 0.05; part < 0.97; part += 0.05) {  // stripes lie between
     Column partly = more;
     bool any = false;
     for (reference::Crossing& crossing : partly.crossings) {
