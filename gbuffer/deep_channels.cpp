@@ -89,9 +89,12 @@ int deepPart(const ExrDocument& document, const std::string& view, std::string& 
   if (deep == 0)
     throw MeaningError(fmt::format("{}: found a flat picture ({}), expected deep samples", document.path,
                                    document.parts.empty() ? "" : namesOf(document.parts[0])));
+  if (found < 0 && sharesViews(document))
+    throw MeaningError(fmt::format("{}: --view: found the views {}, expected {}", document.path,
+                                   fmt::join(document.views, ", "), view));
   if (found < 0)
-    throw MeaningError(
-        fmt::format("{}: --view: found the deep parts {}, expected one of view or name {}", document.path, all, view));
+    throw MeaningError(fmt::format("{}: --view: found the deep parts {}, expected one whose view or name is {}",
+                                   document.path, all, view));
   if (deep > 1 && view.empty())
     note = fmt::format("{}: of {} deep parts {} is taken; --view names another", document.path, deep,
                        titleOf(document.parts[static_cast<std::size_t>(found)]));
@@ -99,6 +102,16 @@ int deepPart(const ExrDocument& document, const std::string& view, std::string& 
 }
 
 }  // namespace
+
+bool isDeep(const ExrDocument& document) {
+  return !document.parts.empty() &&
+         std::all_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; });
+}
+
+bool tellsViews(const ExrDocument& document) {
+  return !document.views.empty() ||
+         std::count_if(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; }) > 1;
+}
 
 DeepChannels resolveDeep(const ExrDocument& document, const std::string& view) {
   const std::string& path = document.path;

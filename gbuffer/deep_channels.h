@@ -25,6 +25,12 @@ struct DeepChannels {
   bool hasRecord() const { return coverage >= 0; }
 };
 
+// Whether all parts are deep.
+bool isDeep(const ExrDocument& document);
+
+// Whether the file tells views apart, or deep parts by their names. One that does not is the same for every eye.
+bool tellsViews(const ExrDocument& document);
+
 //   view  what --view says; "" takes the first one
 // Throws MeaningError when no part is deep, none is of the view, or a channel is lacking.
 DeepChannels resolveDeep(const ExrDocument& document, const std::string& view = "");

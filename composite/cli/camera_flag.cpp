@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "composite/cli/parse.h"
+#include "gbuffer/deep_channels.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::cli {
@@ -95,6 +96,8 @@ SurroundingsChoice surroundingsChoice(const std::string& text) {
 
 std::vector<std::string> viewsOf(const std::string& path) {
   const ExrDocument document = readExr(path);
+  if (isDeep(document))
+    throw UsageError(fmt::format("{}: --view: found all with a deep picture, expected one view of it", path));
   if (document.views.size() < 2)
     throw MeaningError(fmt::format("{}: --view: found {}, expected several views for all", path,
                                    document.views.empty() ? "no views" : "the view " + document.views[0]));

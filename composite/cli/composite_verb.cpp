@@ -82,8 +82,6 @@ void compositeViews(const CompositeFlags& flags, const FrameRun& frame, const Ke
     compositors.push_back(std::make_unique<Compositor>(
         request, [](const std::string& note) { say(note); }, frame.watcher(), kept));
     Compositor& compositor = *compositors.back();
-    if (compositor.shot().deepOpaque)
-      throw UsageError(request.shot.opaque + ": --view: found all with a deep picture, expected one view of it");
     if (flags.explain) {
       for (const std::string& line : describe(compositor.plan(request), compositor.facts()))
         fmt::print("{}: {}\n", view, line);

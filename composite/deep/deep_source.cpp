@@ -38,6 +38,11 @@ bool contains(const Window& window, int x, int y) {
   return x >= window.x0 && x < window.x1 && y >= window.y0 && y < window.y1;
 }
 
+// Of a file that tells no views apart all eyes see the same.
+DeepChannels layersOfView(const ExrDocument& document, const std::string& view) {
+  return resolveDeep(document, tellsViews(document) ? view : "");
+}
+
 }  // namespace
 
 DeepSource::DeepSource(const std::string& path, const DepthConverter& depth, const GBuffer& shot, std::uint32_t index,
@@ -45,7 +50,7 @@ DeepSource::DeepSource(const std::string& path, const DepthConverter& depth, con
     : path_(path),
       depth_(depth),
       index_(index),
-      channels_(resolveDeep(path, view)),
+      channels_(layersOfView(readExr(path), view)),
       reader_(path, channels_.part, channels_.names) {
   expectCameraPicture(channels_, path);
   // `fragments` wrote it: it says itself how it is read, whatever the picture's depth means.

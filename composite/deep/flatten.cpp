@@ -144,9 +144,13 @@ FlatPicture flattenDeep(const std::vector<std::string>& paths, std::uint64_t mos
                         const std::function<void(double)>& told) {
   std::vector<Source> sources(paths.size());
   FlatPicture flat;
+  // Beside a file that has the view, one that tells no views apart is the same for every eye.
+  std::vector<ExrDocument> documents;
+  for (const std::string& path : paths) documents.push_back(readExr(path));
+  const bool haveViews = std::any_of(documents.begin(), documents.end(), tellsViews);
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    const ExrDocument document = readExr(paths[i]);
-    sources[i].channels = resolveDeep(document, view);
+    const ExrDocument& document = documents[i];
+    sources[i].channels = resolveDeep(document, haveViews && !tellsViews(document) ? "" : view);
     if (i == 0) flat.like = document.parts[static_cast<std::size_t>(sources[0].channels.part)];
     if (!sources[i].channels.note.empty()) flat.notes.push_back(sources[i].channels.note);
     sources[i].reader = std::make_unique<DeepReader>(paths[i], sources[i].channels.part, sources[i].channels.names);

@@ -39,10 +39,6 @@ std::string namesOf(const std::vector<SceneCamera>& cameras) {
   return names.empty() ? "none" : names;
 }
 
-bool isDeep(const ExrDocument& document) {
-  return std::all_of(document.parts.begin(), document.parts.end(), [](const ExrPart& part) { return part.deep; });
-}
-
 // How a deep file's depth is read: planar, as OpenEXR has it, unless --depth-kind says otherwise.
 DepthConverter deepDepth(const ReadOptions& options, const Camera* camera, const Window& display,
                          const std::string& path) {
@@ -118,11 +114,12 @@ OpaqueFile interpretDeep(ExrDocument document, const ReadOptions& options, const
   file.gbuffer.viewZ = samples.farthest;
   file.gbuffer.depthPrecision = samples.depthPrecision;
   if (!channels.note.empty()) file.notes.push_back(channels.note);
+  const std::string range =
+      samples.samples.empty() ? "" : fmt::format(", {:.6g} to {:.6g}", file.choice.least, file.choice.most);
   file.notes.push_back(fmt::format(
-      "a deep picture: its {} samples hold transparent layers out one by one; depth: {}, {}, {:.6g} to "
-      "{:.6g}, 1 unit is {:g} m",
-      samples.samples.size(), file.choice.depthChannel, depthKindWords(parseDepthKind(file.choice.depthKind)),
-      file.choice.least, file.choice.most, file.metresPerUnit));
+      "a deep picture: its {} samples hold transparent layers out one by one; depth: {}, {}{}, 1 unit is {:g} m",
+      samples.samples.size(), file.choice.depthChannel, depthKindWords(parseDepthKind(file.choice.depthKind)), range,
+      file.metresPerUnit));
   if (samples.oddities.notFinite)
     file.notes.push_back(fmt::format("{} deep samples are not numbers and were skipped", samples.oddities.notFinite));
   return file;
@@ -164,14 +161,24 @@ void takeCamera(const ShotRequest& request, const OpaqueFile& picture, Shot& sho
     shot.camera = chooseCamera(request.camera, picture.gbuffer, shot.scene, request.opaque, picture.cameraRefusal);
 }
 
+// What --view says of the picture: nothing of one without views, where a deep file has that view.
+std::string viewOfPicture(const ShotRequest& request, const ExrDocument& document) {
+  const std::string& view = request.read.view;
+  const auto isOfViews = [](const std::string& path) { return isExrName(path) && tellsViews(readExr(path)); };
+  if (view.empty() || tellsViews(document)) return view;
+  return std::any_of(request.inputs.begin(), request.inputs.end(), isOfViews) ? "" : view;
+}
+
 // The camera is chosen before depth is converted, which may take it.
 void readPicture(const ShotRequest& request, ExrDocument document, Shot& shot) {
-  ReadOptions framing = request.read;
+  ReadOptions read = request.read;
+  read.view = viewOfPicture(request, document);
+  ReadOptions framing = read;
   framing.framingAlone = true;
   OpaqueFile first = interpretPicture(std::move(document), framing, nullptr, shot.deepOpaque);
   takeCamera(request, first, shot);
-  shot.opaque = interpretPicture(std::move(first.document), request.read, shot.hasCamera ? &shot.camera : nullptr,
-                                 shot.deepOpaque);
+  shot.opaque =
+      interpretPicture(std::move(first.document), read, shot.hasCamera ? &shot.camera : nullptr, shot.deepOpaque);
 }
 
 // The picture of the frame before, unless the camera that may have converted its depth has moved.

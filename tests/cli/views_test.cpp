@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "gbuffer/camera.h"
+#include "gbuffer/deep_io.h"
 #include "gbuffer/exr_document.h"
 #include "tests/support/program.h"
 #include "tests/support/shots.h"
@@ -77,6 +78,24 @@ class Views : public ::testing::Test {
     EXPECT_NE(all.parts[0].find("R")->bytes, all.parts[1].find("R")->bytes) << "they look from elsewhere";
     EXPECT_EQ(one.parts[1].find("R")->at(0), .25f) << "a single run leaves the other view alone";
   }
+  // One layer before the picture, of red 0.25 that hides half.
+  void deepLayer(const std::string& name, const std::string& view) const {
+    DeepHeader header;
+    header.display = header.data = {0, 0, kViewSize, kViewSize};
+    header.channels = {"R", "G", "B", "A", "Z"};
+    if (!view.empty()) header.attributes["view"] = view;
+    DeepRows rows;
+    rows.window = header.data;
+    const std::size_t pixels = kViewSize * kViewSize;
+    for (std::size_t i = 0; i <= pixels; ++i) rows.offsets.push_back(i);
+    for (const float value : {.25f, 0.0f, 0.0f, .5f, 3.0f}) rows.channels.emplace_back(pixels, value);
+    DeepWriter writer(at(name), header);
+    writer.write(rows);
+    writer.finish();
+  }
+  int onto(const std::string& picture, const std::string& deep, const std::string& view) const {
+    return runProgram({"composite", picture, deep, "-o", "out.exr", "--view", view}, options).code;
+  }
   RunOptions options;
 };
 
@@ -111,6 +130,34 @@ TEST_F(Views, BothAreReported) {
   EXPECT_EQ(report["views"][1]["view"], "right");
   EXPECT_TRUE(report["views"][1].contains("error"));
   for (const char* said : {"view left", "view right"}) EXPECT_NE(ended.err.find(said), std::string::npos) << ended.err;
+}
+
+// A deep file without views is the same for every eye, and so is a picture without them.
+TEST_F(Views, DeepFilesHaveTheirOwn) {
+  stereo("stereo.exr", false);
+  NewExr picture = viewPart("left", 0, false);
+  picture.attributes.erase("view");
+  writeNewExr(at("mono.exr"), picture);
+  deepLayer("smoke.exr", "");
+  deepLayer("left.exr", "left");
+  ASSERT_EQ(onto("stereo.exr", "smoke.exr", "right"), 0);
+  const ExrDocument right = readExr(at("out.exr"));
+  EXPECT_EQ(right.parts[0].find("R")->at(0), .25f);
+  EXPECT_EQ(right.parts[1].find("R")->at(0), .375f);
+  EXPECT_EQ(onto("stereo.exr", "smoke.exr", "all"), 0);
+  EXPECT_EQ(onto("stereo.exr", "left.exr", "left"), 0);
+  EXPECT_EQ(onto("stereo.exr", "left.exr", "right"), 4);
+  EXPECT_EQ(onto("mono.exr", "left.exr", "left"), 0);
+  EXPECT_EQ(onto("mono.exr", "left.exr", "right"), 4);
+  EXPECT_EQ(onto("mono.exr", "smoke.exr", "left"), 4) << "nothing has views";
+  const auto flatten = [&](const std::string& view) {
+    return runProgram({"flatten", "smoke.exr", "left.exr", "-o", "out.exr", "--view", view}, options).code;
+  };
+  EXPECT_EQ(flatten("left"), 0);
+  EXPECT_EQ(flatten("right"), 4);
+  const Ended all = runProgram({"composite", "left.exr", "pane.glb", "-o", "out.exr", "--view", "all"}, options);
+  EXPECT_EQ(all.code, 2);
+  EXPECT_EQ(all.err.find("picture:"), std::string::npos) << all.err;
 }
 
 TEST_F(Views, WhatIsRefused) {
