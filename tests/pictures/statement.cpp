@@ -145,6 +145,11 @@ Statements::Surroundings Statements::surroundingsOf(int x, int y) const {
   }
   const auto& shape = picture_.scene().solids[static_cast<std::size_t>(face.solid)].shape;
   if (!std::holds_alternative<reference::Ball>(shape)) return around;
+  // A pass may look past a limb that no sample of the picture has found.
+  for (const glm::dvec2& place : places_) {
+    const Face seen = picture_.columnAt(x + place.x, y + place.y).opaque.face;
+    if (std::find(around.faces.begin(), around.faces.end(), seen) == around.faces.end()) around.faces.push_back(seen);
+  }
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u) around.onPlane = around.onPlane && inside(u, v) && centre(u, v) == face;
   around.beside += 5.0 * flags_.depthStep();
