@@ -43,15 +43,26 @@ EdgePasses::EdgePasses(std::vector<EdgePixel> pixels, std::vector<glm::dvec2> sa
   }
 }
 
+namespace {
+
+// What is nearer where it ends may lean so much that its plane goes on behind the farther. On its own side of the pixel
+// the farther is hidden, and its plane tells nothing by lying in front.
+double seenDepth(const EdgePixel& pixel, bool seesNearer, glm::dvec2 offset) {
+  const double nearer = pixel.nearer.z(offset.x, offset.y), farther = pixel.farther.z(offset.x, offset.y);
+  if (pixel.ridge) return std::max(nearer, farther);
+  if (pixel.meet) return std::min(nearer, farther);
+  const bool nearersSide = glm::dot(offset, pixel.towardsNearer) > 0.0;
+  if (seesNearer) return nearersSide ? nearer : std::min(nearer, farther);
+  return nearersSide ? std::max(nearer, farther) : farther;
+}
+
+}  // namespace
+
 void EdgePasses::depthAt(int pass, Image<float>& viewZ) const {
   const auto number = static_cast<std::size_t>(pass);
   const glm::dvec2 offset = samples_[number] - 0.5;
   for (const Edge& edge : edges_) {
-    const double nearer = edge.pixel.nearer.z(offset.x, offset.y), farther = edge.pixel.farther.z(offset.x, offset.y);
-    // What is nearer where it ends may lean so much that its plane goes on behind the farther.
-    const double z = edge.pixel.ridge                             ? std::max(nearer, farther)
-                     : edge.pixel.meet || edge.seesNearer[number] ? std::min(nearer, farther)
-                                                                  : farther;
+    const double z = seenDepth(edge.pixel, edge.seesNearer[number], offset);
     viewZ.at(edge.pixel.x, edge.pixel.y) = static_cast<float>(z);
   }
 }
