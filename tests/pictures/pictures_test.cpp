@@ -45,7 +45,7 @@ TEST(Pictures, ThoseThatWereWrongAreRight) {
            Trial{"lamps", 902601},       // a pixel at a surface's edge took the slope of a curve beside it
            Trial{"shapes", 902398},      // the same at the border of the picture
            Trial{"lamps", 911480},       // a round thing at the border of the picture was taken for two surfaces
-           Trial{"shadows", 914744},  // past an edge the farther plane lay before what stands before it
+           Trial{"shadows", 914744},     // past an edge the farther plane lay before what stands before it
        })
     expectRight(trial, runTrial(trial, folder, kept), folder);
 }
