@@ -13,7 +13,7 @@ constexpr int kReach = kPlaneReach;
 constexpr int kKnown = 2 * kReach;  // around a part: neighbours that tell a slope, and theirs
 // Two pixels side by side that continue nothing are taken for one surface where what is linear changes by less.
 constexpr double kPairChange = 1.0 / 16.0;
-constexpr double kKink = 8.0;  // a bend so many times that of the next pixels is none of a curve
+constexpr double kKink = 8.0;            // a bend so many times that of the next pixels is none of a curve
 constexpr double kGrazing = 1.0 / 64.0;  // a normal this square to the ray tells no slope
 
 // Along one axis through a pixel: what is linear on a plane, as a part of its value at the pixel.
