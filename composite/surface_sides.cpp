@@ -102,8 +102,8 @@ bool SurfaceSides::apart(int x, int y, int u, int v) const {
   return begun == ended ? begun || !from->goesOn() || !back->goesOn() : begun ? !back->goesOn() : !from->goesOn();
 }
 
-// Of the step from a pixel to a neighbour, both of which were hit, and the two before it. Nothing where the picture ends
-// at the pixel.
+// Of the step from a pixel to a neighbour, both of which were hit, and the two before it. Nothing where the picture
+// ends at the pixel.
 std::optional<SurfaceSides::Bends> SurfaceSides::bendsOf(int x, int y, int dx, int dy) const {
   if (!inside(x - dx, y - dy)) return std::nullopt;
   double at[4];
