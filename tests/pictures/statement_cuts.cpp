@@ -80,7 +80,7 @@ void Statements::eachCut(const Column& column, const Face& face, double nearest,
 
 void Statements::eachPartly(const Column& more, const Column& fewer,
                             const std::function<void(const Column&)>& take) const {
-  for (double part = 0.05; part < 0.97; part += 0.05) {  // stripes lie between
+  for (double part = 0.02; part < 0.99; part += 0.02) {  // stripes lie between
     Column partly = more;
     bool any = false;
     for (reference::Crossing& crossing : partly.crossings) {
