@@ -133,27 +133,14 @@ struct RowOfRuns {
 
 // The lists with the runs of their rows behind each pixel's own fragments.
 FragmentLists joined(const FragmentLists& lists, const std::vector<RowOfRuns>& rows) {
-  FragmentLists result;
-  result.window = lists.window;
-  result.solid = lists.solid;
-  result.offsets.assign(1, 0);
-  const bool disperses = lists.disperses();
+  FragmentLists result = emptyLike(lists);
   std::size_t pixel = 0;
   for (const RowOfRuns& row : rows) {
     std::size_t taken = 0;
     for (const std::uint64_t count : row.counts) {
-      const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
-                 end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
-      result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
-      const auto own = row.made.begin() + static_cast<std::ptrdiff_t>(taken);
-      result.fragments.insert(result.fragments.end(), own, own + static_cast<std::ptrdiff_t>(count));
-      taken += count;
-      result.offsets.push_back(result.fragments.size());
-      if (disperses) {
-        result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
-                                 lists.dispersion.begin() + end);
-        result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
-      }
+      result.append(lists, lists.offsets[pixel], lists.offsets[pixel + 1]);
+      for (const std::uint64_t end = taken + count; taken < end; ++taken) result.append(row.made[taken]);
+      result.endPixel();
       ++pixel;
     }
   }

@@ -32,12 +32,6 @@ shading::Scatter scatterFrom(const Fragment& fragment) {
   return scatter;
 }
 
-bool anyScatters(const FragmentLists& lists) {
-  return std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
-    return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
-  });
-}
-
 bool takesPart(const Fragment& fragment, const glm::vec4& solid) {
   return !(fragment.z > solid.a) && !shading::isSolid(fragment.coverage, fragment.transmission);
 }

@@ -18,7 +18,6 @@ void foldScattering(const FragmentLists& lists, OitPlanes& planes);
 shading::Layer layerFrom(const Fragment& fragment);
 shading::Scatter scatterFrom(const Fragment& fragment);
 bool takesPart(const Fragment& fragment, const glm::vec4& solid);
-bool anyScatters(const FragmentLists& lists);
 void copySolids(const FragmentLists& lists, OitPlanes& planes);
 
 }  // namespace pellucid

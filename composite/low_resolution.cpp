@@ -290,12 +290,15 @@ bool isThere(const Fragment& fragment) {
 
 LowResolutionFragments::LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
                                                const Window& data)
-    : data_(data), fragments_(data.width(), data.height(), Fragment{}), scatters_(low.scatters()) {
-  if (low.disperses()) dispersion_ = Image<glm::vec4>(data.width(), data.height(), glm::vec4(0.0f));
+    : data_(data), scatters_(low.scatters()) {
+  LayerModel layers;
+  layers.disperses = low.disperses();
+  layers_.resize(static_cast<std::size_t>(data.width()) * static_cast<std::size_t>(data.height()), layers);
   upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
     if (!layer.isThere()) return;
-    fragments_.at(x, y) = fragmentOf(layer);
-    if (low.disperses() && layer.refraction.z > 0.0f) dispersion_.at(x, y) = layer.dispersion / layer.refraction.z;
+    const std::size_t place = indexOf({x, y});
+    layers_.fragments[place] = fragmentOf(layer);
+    if (low.disperses() && layer.refraction.z > 0.0f) layers_.dispersion[place] = layer.dispersion / layer.refraction.z;
   });
 }
 
@@ -308,7 +311,7 @@ std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const Fragm
     std::vector<float> depths;
     for (std::size_t pixel = pixels.begin(); pixel != pixels.end(); ++pixel) {
       const std::optional<glm::ivec2> at = placeOf(pixel);
-      if (!at || !isThere(fragments_.at(at->x, at->y))) continue;
+      if (!at || !isThere(layers_.fragments[indexOf(*at)])) continue;
       depths.clear();
       for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
         if (takesPart(lists.fragments[i], lists.solid[pixel])) depths.push_back(lists.fragments[i].z);
@@ -324,31 +327,22 @@ std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const Fragm
 
 template <class PlaceOf>
 FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const {
-  FragmentLists result;
-  result.window = lists.window;
-  result.solid = lists.solid;
-  result.offsets.assign(1, 0);
-  const bool disperses = lists.disperses() || !dispersion_.empty();
+  FragmentLists result = emptyLike(lists);
   const std::vector<std::vector<Fragment>> runs = runsAmong(lists, placeOf);
   for (std::size_t pixel = 0; pixel < lists.solid.size(); ++pixel) {
-    const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
-               end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
-    result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
-    if (lists.disperses())
-      result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
-                               lists.dispersion.begin() + end);
-    if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
+    result.append(lists, lists.offsets[pixel], lists.offsets[pixel + 1]);
     const std::optional<glm::ivec2> at = placeOf(pixel);
     if (!runs[pixel].empty()) {
       for (const Fragment& run : runs[pixel])
-        if (run.z <= lists.solid[pixel].a) result.fragments.push_back(run);
-      if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
-    } else if (at && isThere(fragments_.at(at->x, at->y)) && fragments_.at(at->x, at->y).z <= lists.solid[pixel].a) {
-      result.fragments.push_back(fragments_.at(at->x, at->y));
-      if (disperses) result.dispersion.push_back(dispersion_.empty() ? glm::vec4(0.0f) : dispersion_.at(at->x, at->y));
+        if (run.z <= lists.solid[pixel].a) result.append(run);
+    } else if (at) {
+      const std::size_t place = indexOf(*at);
+      const Fragment& layer = layers_.fragments[place];
+      if (isThere(layer) && layer.z <= lists.solid[pixel].a) result.append(layers_, place, place + 1);
     }
-    result.offsets.push_back(result.fragments.size());
+    result.endPixel();
   }
+  result.addColumnsOf(layers_);
   return result;
 }
 

@@ -91,9 +91,12 @@ class LowResolutionFragments {
   template <class PlaceOf>
   std::vector<std::vector<Fragment>> runsAmong(const FragmentLists& lists, const PlaceOf& placeOf) const;
 
+  std::size_t indexOf(glm::ivec2 at) const {
+    return static_cast<std::size_t>(at.y) * static_cast<std::size_t>(data_.width()) + static_cast<std::size_t>(at.x);
+  }
+
   Window data_;
-  Image<Fragment> fragments_;  // coverage 0 and no radiance where there is none
-  Image<glm::vec4> dispersion_;
+  FragmentLists layers_;  // one in every pixel: coverage 0 and no radiance where there is none
   bool scatters_ = false;
   std::shared_ptr<const LowRuns> runs_;
 };

@@ -111,13 +111,12 @@ class RowOfEntries {
     bool bent = false;
     for (std::uint64_t i = lists_.offsets[pixel_]; i < lists_.offsets[pixel_ + 1]; ++i) {
       if (lists_.fragments[i].z > reach) continue;
-      row.fragments.push_back(lists_.fragments[i]);
+      row.append(lists_, i, i + 1);
       bent = bent || bends(lists_.fragments[i]);
-      if (lists_.disperses()) row.dispersion.push_back(lists_.dispersion[i]);
     }
     const glm::vec4 solid = lists_.solid[pixel_];
     solids_.push_back(solid.a <= reach ? solid : glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
-    row.offsets.push_back(row.fragments.size());
+    row.endPixel();
     held_.pixel.push_back(at_);
     held_.z.push_back(z);
     held_.place.push_back(place);

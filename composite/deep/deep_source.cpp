@@ -101,18 +101,16 @@ class DeepMerge {
     merged.solid = Image<glm::vec4>(merged.window.width(), merged.window.height());
     const auto height = static_cast<std::size_t>(merged.window.height());
     const auto width = static_cast<std::size_t>(merged.window.width());
-    std::vector<std::vector<Fragment>> rowFragments(height);
-    std::vector<std::vector<std::uint64_t>> rowCounts(height);
+    std::vector<FragmentLists> rows(height);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height), [&](const tbb::blocked_range<std::size_t>& range) {
       std::vector<DeepOddities> oddities(sources_.size());
       Scratch scratch;
       for (std::size_t r = range.begin(); r != range.end(); ++r) {
-        rowCounts[r].reserve(width);
+        rows[r].offsets.reserve(width);
         for (int x = merged.window.x0; x < merged.window.x1; ++x) {
-          const std::size_t had = rowFragments[r].size();
           const int py = y + static_cast<int>(r);
-          merged.solid.at(x - merged.window.x0, static_cast<int>(r)) = pixel(x, py, rowFragments[r], scratch, oddities);
-          rowCounts[r].push_back(rowFragments[r].size() - had);
+          merged.solid.at(x - merged.window.x0, static_cast<int>(r)) = pixel(x, py, rows[r], scratch, oddities);
+          rows[r].endPixel();
         }
       }
       const std::lock_guard lock(mutex_);
@@ -120,31 +118,18 @@ class DeepMerge {
     });
     merged.offsets.assign(1, 0);
     merged.fragments.clear();
-    for (std::size_t r = 0; r < height; ++r) {
-      for (const std::uint64_t count : rowCounts[r]) merged.offsets.push_back(merged.offsets.back() + count);
-      merged.fragments.insert(merged.fragments.end(), rowFragments[r].begin(), rowFragments[r].end());
-      std::vector<Fragment>().swap(rowFragments[r]);
+    merged.clearColumns();
+    for (FragmentLists& row : rows) {
+      const std::uint64_t before = merged.fragments.size();
+      for (const std::uint64_t last : row.offsets) merged.offsets.push_back(before + last);
+      merged.append(row, 0, row.fragments.size());
+      row = FragmentLists();
     }
-    addDispersion(merged);
+    merged.addColumnsOf(lists_);
     return end;
   }
 
  private:
-  // Of the lists' own fragments, which lead in every pixel; deep samples refract all channels alike.
-  void addDispersion(FragmentLists& merged) const {
-    merged.dispersion.clear();
-    if (!lists_.disperses()) return;
-    merged.dispersion.resize(merged.fragments.size(), glm::vec4(0.0f));
-    std::size_t pixel = 0;
-    for (int y = merged.window.y0; y < merged.window.y1; ++y)
-      for (int x = merged.window.x0; x < merged.window.x1; ++x, ++pixel) {
-        const std::size_t own = pixelOf(lists_.window, x, y);
-        std::copy(lists_.dispersion.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own]),
-                  lists_.dispersion.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own + 1]),
-                  merged.dispersion.begin() + static_cast<std::ptrdiff_t>(merged.offsets[pixel]));
-      }
-  }
-
   // The nearest opaque samples of a pixel, by the rules of visitTidy(): those at one depth average among themselves,
   // and points come before the volumes that begin there.
   struct Opaque {
@@ -186,11 +171,10 @@ class DeepMerge {
   }
 
   // Appends the pixel's fragments, returns its solid.
-  glm::vec4 pixel(int x, int y, std::vector<Fragment>& out, Scratch& scratch, std::vector<DeepOddities>& oddities) {
-    const std::size_t own = pixelOf(lists_.window, x, y), had = out.size();
+  glm::vec4 pixel(int x, int y, FragmentLists& out, Scratch& scratch, std::vector<DeepOddities>& oddities) {
+    const std::size_t own = pixelOf(lists_.window, x, y), had = out.fragments.size();
     glm::vec4 solid = lists_.solid.at(x - lists_.window.x0, y - lists_.window.y0);
-    out.insert(out.end(), lists_.fragments.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own]),
-               lists_.fragments.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[own + 1]));
+    out.append(lists_, lists_.offsets[own], lists_.offsets[own + 1]);
     const double surface = static_cast<double>(shot_.viewZ.at(x - shot_.data.x0, y - shot_.data.y0)) *
                            (1.0 + static_cast<double>(shot_.depthPrecision));
     scratch.volumes.clear();
@@ -222,37 +206,36 @@ class DeepMerge {
         Fragment fragment = source.channels_.hasRecord() ? recordOf(source, rows_[s], i, sample.z)
                                                          : fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
         fragment.identity = identityOf(source.index_, x, y, i - first);
-        if (!source.channels_.hasRecord()) scratch.plain.push_back(out.size());
-        out.push_back(fragment);
+        if (!source.channels_.hasRecord()) scratch.plain.push_back(out.fragments.size());
+        out.append(fragment);
       }
     }
     if (nearest.count > 0.0 && nearest.z <= solid.a) {
       // It hides what other renderers' samples have at its depth; anything else there lies on it. Of two solids at one
       // depth the larger, channel by channel, whatever the order.
       for (const std::size_t i : scratch.plain)
-        if (nearest.point && out[i].z == nearest.z)
-          out[i].z = std::nextafter(nearest.z, std::numeric_limits<float>::infinity());
+        if (nearest.point && out.fragments[i].z == nearest.z)
+          out.fragments[i].z = std::nextafter(nearest.z, std::numeric_limits<float>::infinity());
       solid = nearest.z < solid.a ? nearest.solid() : glm::max(solid, nearest.solid());
     }
     std::erase_if(scratch.volumes, [&](const DeepSample& v) { return v.z > static_cast<double>(solid.a); });
     if (!scratch.volumes.empty()) splitVolumes(scratch, out, had, static_cast<double>(solid.a), x, y);
-    const auto behind = std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(had), out.end(),
-                                       [&](const Fragment& fragment) { return fragment.z > solid.a; });
-    out.erase(behind, out.end());
+    out.keepFrom(had, [&](const Fragment& fragment) { return !(fragment.z > solid.a); });
     return solid;
   }
 
-  void splitVolumes(Scratch& scratch, std::vector<Fragment>& out, std::size_t had, double solidZ, int x, int y) const {
+  void splitVolumes(Scratch& scratch, FragmentLists& out, std::size_t had, double solidZ, int x, int y) const {
     for (DeepSample& volume : scratch.volumes)
       if (volume.zBack > solidZ && volume.z < solidZ) volume = partOfVolume(volume, volume.z, solidZ);
     scratch.cuts.clear();
-    for (std::size_t i = had; i < out.size(); ++i) scratch.cuts.push_back(static_cast<double>(out[i].z));
+    for (std::size_t i = had; i < out.fragments.size(); ++i)
+      scratch.cuts.push_back(static_cast<double>(out.fragments[i].z));
     std::sort(scratch.cuts.begin(), scratch.cuts.end());
     std::uint64_t piece = 0;
     visitTidy(scratch.volumes, scratch.cuts, [&](const DeepSample& sample) {
       Fragment fragment = fragmentAt(sample, 0.5 * (sample.z + sample.zBack));
       fragment.identity = identityOf(0xffffffffu, x, y, piece++);
-      out.push_back(fragment);
+      out.append(fragment);
     });
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine_bridge/gl/frame_blocks.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::gl {
@@ -31,7 +32,7 @@ class BandWriter {
   void write(Renderer& renderer, const Image<float>& count, const Window& band, FragmentLists& lists);
 
  private:
-  ListBuffer fragments_, cursors_, dispersion_;
+  ListBuffer fragments_, cursors_, columns_[kFragmentColumns];
   std::vector<std::uint32_t> places_;
 };
 
@@ -43,7 +44,7 @@ void BandWriter::write(Renderer& renderer, const Image<float>& count, const Wind
       places_.push_back(static_cast<std::uint32_t>(lists.offsets.back()));
       lists.offsets.push_back(lists.offsets.back() + countAt(count, x, y));
     }
-  lists.fragments.resize(lists.offsets.back());
+  lists.resize(lists.offsets.back(), renderer.listedLayers());
   if (lists.fragments.empty()) return;
 
   const auto bytes = static_cast<GLsizeiptr>(lists.fragments.size() * sizeof(Fragment));
@@ -51,17 +52,19 @@ void BandWriter::write(Renderer& renderer, const Image<float>& count, const Wind
   fragments_.atLeast(lists.fragments.size() * sizeof(Fragment), 3, "making room for fragment lists");
   cursors_.atLeast(places_.size() * sizeof(std::uint32_t), 4, "making room for the cursors of fragment lists");
   glNamedBufferSubData(cursors_.name(), 0, cursorBytes, places_.data());
-  lists.dispersion.resize(renderer.disperses() ? lists.fragments.size() : 0);
-  const auto dispersionBytes = static_cast<GLsizeiptr>(lists.dispersion.size() * sizeof(glm::vec4));
-  if (lists.disperses())
-    dispersion_.atLeast(lists.dispersion.size() * sizeof(glm::vec4), 7, "making room for dispersion");
+  const auto bytesOf = [](const FragmentColumn& column) { return column.size() * sizeof(glm::vec4); };
+  for (std::size_t k = 0; k < kFragmentColumns; ++k)
+    if (const FragmentColumn& column = *lists.columns()[k]; !column.empty())
+      columns_[k].atLeast(bytesOf(column), kFirstColumn + static_cast<GLuint>(k), "making room for a list's columns");
   renderer.setBand(band);
   renderer.targets().beginNothing();
   renderer.draw(Output::list, {band});
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(fragments_.name(), 0, bytes, lists.fragments.data());
   glGetNamedBufferSubData(cursors_.name(), 0, cursorBytes, places_.data());
-  if (lists.disperses()) glGetNamedBufferSubData(dispersion_.name(), 0, dispersionBytes, lists.dispersion.data());
+  for (std::size_t k = 0; k < kFragmentColumns; ++k)
+    if (FragmentColumn& column = *lists.columns()[k]; !column.empty())
+      glGetNamedBufferSubData(columns_[k].name(), 0, static_cast<GLsizeiptr>(bytesOf(column)), column.data());
   checkGl("reading fragment lists back");
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (places_[i] != lists.offsets[i + 1]) throw std::logic_error("fragments counted and fragments listed differ");

@@ -31,4 +31,8 @@ static_assert(offsetof(FrameBlock, weightNear) == 80 && offsetof(FrameBlock, ban
 static_assert(offsetof(FrameBlock, weightReference) == 320);
 static_assert(offsetof(FrameBlock, lightCount) == 112 && offsetof(FrameBlock, viewport) == 120);
 
+// Storage binding of the first column of lists (gbuffer/fragments.h), the others after it; as in
+// shaders/gl/list_output.glsl and replay.frag.
+constexpr std::uint32_t kFirstColumn = 7;
+
 }  // namespace pellucid::gl

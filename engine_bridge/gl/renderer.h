@@ -47,11 +47,12 @@ class Renderer {
   Targets& targets() { return *targets_; }
   // What the layers are summed in, after begin().
   LayerModel layers() const { return layersOf(features_, settings_); }
+  // What they are as Output::list has them, after begin().
+  LayerModel listedLayers() const { return layersOf(features_, SumsSettings()); }
   bool hasSolids() const { return features_.solids; }
   bool scatters() const { return features_.scatters(); }
   bool refracts() const { return features_.refracts; }
   bool diffuses() const { return features_.diffuses; }
-  bool disperses() const { return features_.disperses; }
   // Whether a pass with these settings would.
   bool wouldScatter(const PassSettings& settings) const;
   bool wouldOcclude(const PassSettings& settings) const;

@@ -30,12 +30,6 @@ gl::FrameBlock frameOf(const shading::WeightSettings& weight, int width) {
   return frame;
 }
 
-bool anyScatters(const FragmentLists& lists) {
-  return lists.disperses() || std::any_of(lists.fragments.begin(), lists.fragments.end(), [](const Fragment& fragment) {
-           return fragment.variance > 0.0f || fragment.offset != glm::vec2(0.0f);
-         });
-}
-
 }  // namespace
 
 OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading::WeightSettings& weight,
@@ -61,13 +55,14 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glNamedBufferData(frameBuffer.name(), sizeof(frame), &frame, GL_STATIC_DRAW);
   gl::checkGl("uploading fragments to replay");
 
-  const bool scatters = anyScatters(lists);
-  if (scatters) addScatterPlanes(planes);
-  const gl::Buffer dispersionBuffer = gl::Buffer::make();
-  if (lists.disperses()) {
-    addDispersionPlane(planes);
-    fill(dispersionBuffer, lists.dispersion);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, dispersionBuffer.name());
+  if (anyScatters(lists)) addScatterPlanes(planes);
+  if (lists.disperses()) addDispersionPlane(planes);
+  std::vector<gl::Buffer> columnBuffers;
+  for (std::size_t k = 0; k < kFragmentColumns; ++k) {
+    columnBuffers.push_back(gl::Buffer::make());
+    if (lists.columns()[k]->empty()) continue;
+    fill(columnBuffers[k], *lists.columns()[k]);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, gl::kFirstColumn + static_cast<GLuint>(k), columnBuffers[k].name());
   }
   const gl::Program program = gl::buildProgram("gl/fullscreen.vert", "gl/replay.frag", writeDefines(modelOf(planes)));
   const gl::VertexArray noVertices = gl::VertexArray::make();

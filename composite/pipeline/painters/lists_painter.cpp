@@ -111,13 +111,13 @@ class ListsPainter : public Painter {
       foldExact(given, sample.weight, sample.normalisation, planes_);
     else if (scatters_)
       foldScattering(given, planes_);
-    if (!context_.plan.isExact() && !(scatters_ && (given.disperses() || hidesSolids(given, planes_)))) {
+    if (!context_.plan.isExact() && !(scatters_ && (given.hasColumns() || hidesSolids(given, planes_)))) {
       mix(sample, pass, given, veil);
       return;
     }
     shown_ = given;
+    shown_.clearColumns();  // what they tell is in the planes
     if (scatters_) hideSolids(shown_, planes_);
-    shown_.dispersion.clear();  // it is in the planes
     if (context_.plan.isExact()) orderByDepthAndBits(shown_);
     mix(sample, pass, shown_, veil);
   }
