@@ -4,7 +4,7 @@
 // gbuffer/fragments.h.
 #include "gl/frame.glsl"
 #include "gl/identity.glsl"
-#include "shared/refraction.glsl"
+#include "gl/scattered.glsl"
 
 #ifdef LEAN
 const uint kPairs = 4u;
@@ -27,12 +27,9 @@ void storePair(uint place, vec2 words) {
   storePair(place, floatBitsToUint(words));
 }
 
-#ifdef DISPERSION
-layout(std430, binding = 7) writeonly buffer Dispersions { vec4 dispersions[]; };  // one per fragment
-#endif
 layout(std430, binding = 4) buffer Cursors { uint cursors[]; };  // per pixel of the band: where its next fragment goes
 
-void appendFragment(Layer layer, Scatter scatter, vec4 dispersion, ivec2 pixel) {
+void appendFragment(Layer layer, Scattered here, ivec2 pixel) {
   ivec2 inBand = pixel - band.xy;
   uint place = atomicAdd(cursors[inBand.y * band.z + inBand.x], 1u);
   uint first = place * kPairs;
@@ -42,10 +39,8 @@ void appendFragment(Layer layer, Scatter scatter, vec4 dispersion, ivec2 pixel) 
   storePair(first + 2u, layer.transmission.rg);
   storePair(first + 3u, vec2(layer.transmission.b, layer.z));
 #ifndef LEAN
-  storePair(first + 4u, scatter.offset);
-  storePair(first + 5u, uvec2(floatBitsToUint(scatter.variance), identityOf(instanceIdentity, triangleNumber)));
+  storePair(first + 4u, here.scatter.offset);
+  storePair(first + 5u, uvec2(floatBitsToUint(here.scatter.variance), identityOf(instanceIdentity, triangleNumber)));
 #endif
-#ifdef DISPERSION
-  dispersions[place] = dispersion;
-#endif
+  storeColumns(place, here);
 }

@@ -1,12 +1,11 @@
 // Blends fragment number `turn` of every pixel's list, so that the blend order of a pixel is its list's order.
+#define REPLAY
 #include "gl/frame.glsl"
 #include "gl/fragment_record.glsl"
+#include "gl/scattered.glsl"
 #include "gl/sums_output.glsl"
 
 layout(std430, binding = 3) readonly buffer Fragments { FragmentRecord fragments[]; };
-#ifdef DISPERSION
-layout(std430, binding = 7) readonly buffer Dispersions { vec4 dispersions[]; };
-#endif
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 
 uniform uint turn;
@@ -30,13 +29,9 @@ void main() {
   settings.reference = weightReference.x;
   writeSums(layer, settings);
 #ifdef SCATTER
-  Scatter scatter;
-  scatter.offset = record.offset;
-  scatter.variance = record.variance;
-  vec4 dispersion = vec4(0.0f);
-#ifdef DISPERSION
-  dispersion = dispersions[place];
-#endif
-  writeScatter(layer, scatter, dispersion);
+  Scattered here = withColumns(scattersNothing(), place);
+  here.scatter.offset = record.offset;
+  here.scatter.variance = record.variance;
+  WRITE_SCATTERED(layer, here);
 #endif
 }

@@ -2,6 +2,7 @@
 // Refraction and diffusion of the layer under this fragment.
 #include "gl/frame.glsl"
 #include "gl/material.glsl"
+#include "gl/scattered.glsl"
 #include "shared/closed_body.glsl"
 #include "shared/diffusion.glsl"
 #ifdef SCATTER
@@ -29,16 +30,8 @@ float backdropZ(ivec2 pixel) {
   return z;
 }
 
-struct ScatterHere {
-  Scatter scatter;
-  vec4 dispersion;  // offset of red minus that of green, of blue minus that of green
-};
-
-ScatterHere scatterHere(Layer layer, Surface surface, ivec2 pixel) {
-  vec4 dispersion = vec4(0.0f);
-  Scatter scatter;
-  scatter.offset = vec2(0.0f);
-  scatter.variance = 0.0f;
+Scattered scatterHere(Layer layer, Surface surface, ivec2 pixel) {
+  Scattered here = scattersNothing();
 #ifdef REFRACTS
   // Entering faces only: along the ray that has not been bent, back faces would reflect all.
   if (gl_FrontFacing && material.scattering.z != 1.0f) {
@@ -56,11 +49,11 @@ ScatterHere scatterHere(Layer layer, Surface surface, ivec2 pixel) {
 #endif
     float behind = backdropZ(pixel);
     vec2 offset = offsetOf(settings, toEye, normal, material.scattering.z, behind, thickness);
-    scatter.offset = recordedOffset(offset);
+    here.scatter.offset = recordedOffset(offset);
 #ifdef DISPERSES
     vec2 red = offsetOf(settings, toEye, normal, material.dispersion.r, behind, thickness);
     vec2 blue = offsetOf(settings, toEye, normal, material.dispersion.g, behind, thickness);
-    dispersion = vec4(red - offset, blue - offset);
+    here.dispersion = vec4(red - offset, blue - offset);
 #endif
   }
 #endif
@@ -74,12 +67,9 @@ ScatterHere scatterHere(Layer layer, Surface surface, ivec2 pixel) {
   float collimation = material.scattering.x >= 0.0f
                           ? material.scattering.x
                           : collimationOf(surface.roughness * material.covering.a, material.scattering.y);
-  scatter.variance = layerVariance(settings, layer.coverage, layer.transmission, collimation, layer.z,
-                                   backdropZ(pixel));
+  here.scatter.variance = layerVariance(settings, layer.coverage, layer.transmission, collimation, layer.z,
+                                        backdropZ(pixel));
 #endif
-  ScatterHere here;
-  here.scatter = scatter;
-  here.dispersion = dispersion;
   return here;
 }
 #endif

@@ -130,24 +130,19 @@ void writeHere(Layer layer, Surface surface, Reflected reflected, vec2 gradient,
   settings.reference = weightReference.x;
 #endif
 #if defined(OUTPUT_LIST) || defined(OUTPUT_PUBLISHED)
-  Scatter scatter;
-  scatter.offset = vec2(0.0f);
-  scatter.variance = 0.0f;
-  vec4 dispersion = vec4(0.0f);
+  Scattered here = scattersNothing();
 #ifdef SCATTER
-  ScatterHere here = scatterHere(layer, surface, pixel);
-  scatter = here.scatter;
-  dispersion = here.dispersion;
+  here = scatterHere(layer, surface, pixel);
 #endif
 #endif
 #if defined(OUTPUT_SUMS)
   writeSums(layer, settings);
 #ifdef SCATTER
-  ScatterHere here = scatterHere(layer, surface, pixel);
-  writeScatter(layer, here.scatter, here.dispersion);
+  Scattered here = scatterHere(layer, surface, pixel);
+  WRITE_SCATTERED(layer, here);
 #endif
 #elif defined(OUTPUT_PUBLISHED)
-  writePublished(layer, scatter, settings);
+  writePublished(layer, here.scatter, settings);
 #elif defined(OUTPUT_RIMS)
 #if defined(OCCLUDED) && !defined(UNLIT)
   if (!isRim(surface.coverage)) discard;
@@ -164,7 +159,7 @@ void writeHere(Layer layer, Surface surface, Reflected reflected, vec2 gradient,
 #elif defined(OUTPUT_ADD)
   addVisible(layer, identityOf(instanceIdentity, triangleNumber), pixel);
 #elif defined(OUTPUT_LIST)
-  appendFragment(layer, scatter, dispersion, pixel);
+  appendFragment(layer, here, pixel);
 #endif
 }
 
