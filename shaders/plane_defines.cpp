@@ -207,4 +207,14 @@ bool listsOffsets(const LayerModel& model, PlaneStage stage) {
   return stage == PlaneStage::rims || (stage == PlaneStage::layers && model.scatters());
 }
 
+const char* listBlockName(int block) {
+  constexpr const char* names[] = {"PldLinks", "PldRadiances", "PldTransmissions", "PldOffsets", "PldDispersions"};
+  return names[block];
+}
+
+int listBlocks(const LayerModel& model, PlaneStage stage) {
+  if (stage == PlaneStage::layers && model.disperses) return 5;
+  return listsOffsets(model, stage) ? 4 : 3;
+}
+
 }  // namespace pellucid

@@ -37,5 +37,8 @@ std::vector<std::string> emptyDefines(const LayerModel& model);
 std::string rimSamplers(int firstUnit = -1);
 // Of gl/exact_fold.frag and of stages that list fragments for it: whether a record has an offset.
 bool listsOffsets(const LayerModel& model, PlaneStage stage);
+// Blocks of gl/exact_lists.glsl in the order of their bindings; the lists of a stage take so many of them.
+const char* listBlockName(int block);
+int listBlocks(const LayerModel& model, PlaneStage stage);
 
 }  // namespace pellucid

@@ -7,10 +7,6 @@
 
 namespace pellucid::c {
 
-constexpr uint32_t kEveryFeature = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
-                                   PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS |
-                                   PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS;
-
 // Whether some choice is none that its enumeration has; `text` then says which.
 template <class Info, std::size_t size>
 bool nameUnknownChoice(const Info& info, const char* call, char (&text)[size]) {

@@ -98,6 +98,10 @@ Focal focalOf(const pld_frame& frame, int pixelsATexel) {
           std::fabs(frame.projection[5]) * (0.5f * static_cast<float>(frame.height)) * scale};
 }
 
+const uint32_t kEveryFeature = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
+                               PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS |
+                               PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS;
+
 LayerModel modelOf(const Permutation& p) {
   LayerModel model;
   model.tier = p.exact()                 ? PlaneTier::exact
@@ -177,6 +181,10 @@ std::vector<std::string> foldDefines(const Permutation& p, pld_stage stage) {
   if (listsOffsets(model, planeStageOf(stage))) defines.emplace_back("LISTS_OFFSETS");
   if (p.sorted() && p.has(PLD_FEATURE_SOLIDS)) defines.emplace_back("SOLIDS");
   return defines;
+}
+
+int listBlocks(const Permutation& p, pld_stage stage) {
+  return pellucid::listBlocks(modelOf(p), planeStageOf(stage));
 }
 
 std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip) {

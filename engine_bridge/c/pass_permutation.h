@@ -50,6 +50,8 @@ struct Permutation {
   }
 };
 
+extern const uint32_t kEveryFeature;  // pld_feature
+
 LayerModel modelOf(const Permutation& permutation);
 
 // Whether pld_frame.projection, by columns, has clip w = -z; whether it has w = 1.
@@ -78,7 +80,8 @@ std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage s
 std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip);
 //   showsThrough  false for what looks at a pixel's layers and not at the background behind them
 std::vector<std::string> resolveDefines(const Permutation& permutation, bool showsThrough = true);
-// Of the exact tier: defines of shaders/gl/exact_fold.frag.
+// Of the exact tier: defines of shaders/gl/exact_fold.frag; how many blocks the lists of a stage take.
 std::vector<std::string> foldDefines(const Permutation& permutation, pld_stage stage);
+int listBlocks(const Permutation& permutation, pld_stage stage);
 
 }  // namespace pellucid::c

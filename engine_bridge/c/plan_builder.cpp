@@ -15,13 +15,6 @@ bool isPacked(PlaneSum sum) {
   return sum <= PlaneSum::light;
 }
 
-// Blocks of shaders/gl/exact_lists.glsl that the lists of a stage take, of those that the pass has.
-int listsOf(const Permutation& p, pld_stage stage) {
-  const bool layers = stage == PLD_STAGE_LAYERS || stage == PLD_STAGE_LOW;
-  if (layers && p.has(PLD_FEATURE_DISPERSION)) return 5;
-  return stage == PLD_STAGE_RIMS || (layers && p.scatters()) ? 4 : 3;
-}
-
 }  // namespace
 
 void PlanBuilder::addPlanarDepth() {
@@ -56,7 +49,7 @@ void PlanBuilder::addStage(pld_stage stage, const char* name, const Planes& plan
   pass.part = low ? PartOfFrame::low : PartOfFrame::picture;
   readSeam(pass);
   if (p_.exact()) {
-    pass.lists = listsOf(p_, stage);
+    pass.lists = listBlocks(p_, stage);
     pass.emptiesLists = true;
   } else {
     attach(pass, planes, PLD_LOAD_CLEAR, !solids);
@@ -78,7 +71,7 @@ void PlanBuilder::addFold(pld_stage stage, const char* name, const Planes& plane
   PlannedPass& pass =
       addPass((std::string(name) + " folded").c_str(), stage, file, foldDefines(low ? lowPermutation(p_) : p_, stage));
   pass.part = low ? PartOfFrame::low : PartOfFrame::picture;
-  pass.lists = listsOf(p_, stage);
+  pass.lists = listBlocks(p_, stage);
   pass.numbers = {StageNumber::rowLength};
   if (!solids && !p_.sorted()) pass.numbers.push_back(StageNumber::weight);
   if (!solids && p_.sorted() && !solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solidHere");

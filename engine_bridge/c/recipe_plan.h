@@ -133,7 +133,4 @@ constexpr pld_blend blendOf(PlaneBlend blend) {
   }
 }
 
-// Names of the blocks of shaders/gl/exact_lists.glsl.
-constexpr const char* kListNames[5] = {"PldLinks", "PldRadiances", "PldTransmissions", "PldOffsets", "PldDispersions"};
-
 }  // namespace pellucid::c

@@ -1,5 +1,7 @@
 #include "engine_bridge/c/stage_plan.h"
 
+#include <algorithm>
+
 namespace pellucid::c {
 
 uint32_t stagesOf(const Permutation& p) {
@@ -27,8 +29,8 @@ Permutation lowPermutation(const Permutation& permutation) {
 
 int listBlocks(const Permutation& p) {
   if (!p.exact()) return 0;
-  const bool offsets = p.scatters() || p.rimsApart();
-  return p.has(PLD_FEATURE_DISPERSION) ? 5 : offsets ? 4 : 3;
+  const int layers = listBlocks(p, PLD_STAGE_LAYERS);
+  return p.rimsApart() ? std::max(layers, listBlocks(p, PLD_STAGE_RIMS)) : layers;
 }
 
 ListSizes listSizes(int width, int height, uint64_t fragments) {

@@ -49,39 +49,6 @@ gl::Texture uploadPlane(const OitPlanes& planes, const PlaneSpec& plane) {
                 gl::channelsOf(plane.components()));
 }
 
-// Null for sums that a resolve does not read.
-template <class Textures>
-auto nameOf(Textures& textures, PlaneSum sum) -> decltype(&textures.radiance) {
-  switch (sum) {
-    case PlaneSum::radiance:
-      return &textures.radiance;
-    case PlaneSum::weight:
-      return &textures.weight;
-    case PlaneSum::opacity:
-      return &textures.opacity;
-    case PlaneSum::depth:
-      return &textures.depth;
-    case PlaneSum::light:
-      return &textures.light;
-    case PlaneSum::refraction:
-      return &textures.refraction;
-    case PlaneSum::dispersion:
-      return &textures.dispersion;
-    case PlaneSum::nearestZ:
-      return &textures.nearestZ;
-    default:
-      return nullptr;
-  }
-}
-
-LayerModel layersOf(const ResolveTextures& textures) {
-  LayerModel layers;
-  layers.refracts = layers.diffuses = textures.refraction != 0;
-  layers.disperses = textures.dispersion != 0;
-  layers.solids = true;
-  return layers;
-}
-
 gl::Texture target(int width, int height) {
   gl::Texture texture = gl::Texture::make();
   glTextureStorage2D(texture.name(), 1, GL_RGBA32F, width, height);
@@ -165,7 +132,8 @@ ResolvePass::~ResolvePass() = default;
 void ResolvePass::draw(const ResolveTextures& textures, int width, int height, float largestVariance,
                        const DeviceResolveSettings& settings, std::uint32_t framebuffer) {
   const float largestSpread = std::hypot(static_cast<float>(width), static_cast<float>(height));
-  const bool pyramid = textures.refraction && !settings.exact && settings.kernel == shading::PLD_DIFFUSE_GAUSSIAN;
+  const LayerModel& layers = textures.layers;
+  const bool pyramid = layers.scatters() && !settings.exact && settings.kernel == shading::PLD_DIFFUSE_GAUSSIAN;
   const int levels = pyramid ? shading::spreadLevel(shading::kernelSpread(largestVariance, largestSpread)) : 0;
   impl_->layOut(width, height, levels);
   const auto bind = [](int unit, GLuint texture) {
@@ -175,9 +143,8 @@ void ResolvePass::draw(const ResolveTextures& textures, int width, int height, f
   bind(kBackgroundUnit, textures.background);
   bind(kOpaqueZUnit, textures.opaqueZ);
   bind(kSolidUnit, textures.solid);
-  const LayerModel layers = layersOf(textures);
   for (const PlaneSpec& plane : planesOf(layers))
-    if (const GLuint* texture = nameOf(textures, plane.sum)) bind(plane.unit, *texture);
+    bind(plane.unit, textures.planes.at(static_cast<std::size_t>(plane.sum)));
   for (int i = 0; i < kSpreadPlanes; ++i) bind(kSpreadUnit + i, impl_->spread[i].name());
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_TEST);
@@ -216,8 +183,9 @@ DeviceVeil ResolvePass::resolve(const OitPlanes& planes, const GBuffer& backgrou
     return kept.back().name();
   };
   ResolveTextures textures;
-  for (const PlaneSpec& plane : planesOf(modelOf(planes)))
-    if (GLuint* texture = nameOf(textures, plane.sum)) *texture = keep(uploadPlane(planes, plane));
+  textures.layers = modelOf(planes);
+  for (const PlaneSpec& plane : planesOf(textures.layers))
+    textures.planes.at(static_cast<std::size_t>(plane.sum)) = keep(uploadPlane(planes, plane));
   textures.solid = keep(upload(planes.solid, GL_RGBA32F, GL_RGBA));
   textures.background = keep(upload(background.beauty, GL_RGBA32F, GL_RGBA));
   textures.opaqueZ = keep(upload(background.viewZ, GL_R32F, GL_RED));

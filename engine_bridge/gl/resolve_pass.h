@@ -1,10 +1,12 @@
 // Sums to picture on the device, from the text that the CPU resolves by: for engines whose planes are there already.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 
 #include "engine_bridge/gl/transparent_pass.h"
+#include "shaders/plane_layout.h"
 
 namespace pellucid {
 
@@ -15,13 +17,12 @@ struct DeviceResolveSettings {
   bool published = false;                      // the planes are those of records in the published tier
 };
 
-// GL names of 2D textures of one size, row 0 the top row. The planes of MODEL section 3 as shaders/shared packs them:
-// what the targets of a transparent pass are. 0 stands for a plane that the scene does not have.
+// GL names of 2D textures of one size, row 0 the top row.
 struct ResolveTextures {
-  std::uint32_t radiance = 0, weight = 0, opacity = 0, depth = 0, light = 0;  // RGBA32F
-  std::uint32_t refraction = 0;                                               // RGBA32F; 0: nothing scatters
-  std::uint32_t nearestZ = 0;    // RG32F: of all layers, of those that diffuse; with refraction
-  std::uint32_t dispersion = 0;  // RGBA32F; 0: nothing disperses
+  // The planes of MODEL section 3 as shaders/shared packs them: what the targets of a transparent pass over such layers
+  // are. By PlaneSum; those that planesOf(layers) has.
+  LayerModel layers;
+  std::array<std::uint32_t, static_cast<std::size_t>(PlaneSum::nearestZ) + 1> planes{};
   std::uint32_t solid = 0;       // RGBA32F; rgb, planar z, +inf for none
   std::uint32_t background = 0;  // RGBA, scene-linear, premultiplied, and alpha
   std::uint32_t opaqueZ = 0;     // R32F, planar metres, +inf for nothing
