@@ -48,10 +48,7 @@ namespace {
 template <class TermsOf>
 void foldInto(const FragmentLists& lists, OitPlanes& planes, const TermsOf& termsOf) {
   copySolids(lists, planes);
-  if (anyScatters(lists)) {
-    addScatterPlanes(planes);
-    if (lists.disperses()) addDispersionPlane(planes);
-  }
+  if (anyScatters(lists)) addPlanes(planes, modelOf(lists));
   const PixelSums pixels(planes);
   const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
   const auto width = static_cast<std::size_t>(lists.window.width());

@@ -31,11 +31,13 @@ PlaneTerms summed(const std::vector<PlaneTerms>& terms) {
   return sums;
 }
 
-// What scattering reads of a pixel's sums.
-constexpr PlaneSum kScattering[] = {PlaneSum::light, PlaneSum::refraction, PlaneSum::dispersion};
+// What scattering reads of a pixel's sums: light, and what stands after it.
+constexpr auto kFirstRead = static_cast<std::size_t>(PlaneSum::light);
+constexpr std::size_t kReadSums = kAddedSums - kFirstRead;
+static_assert(kFirstRead + 1 == kFirstScatterSum);
 
 struct ScatteringTerms {
-  glm::vec4 sums[std::size(kScattering)];
+  glm::vec4 sums[kReadSums];
 };
 
 glm::vec4 summed(const std::vector<ScatteringTerms>& terms, std::size_t plane) {
@@ -53,26 +55,29 @@ glm::vec4 summed(const std::vector<ScatteringTerms>& terms, std::size_t plane) {
 PLD_CLONES void foldScatteringRow(const FragmentLists& lists, int y, std::vector<ScatteringTerms>& terms,
                                   OitPlanes& planes) {
   const int left = lists.window.x0 - planes.data.x0, py = lists.window.y0 - planes.data.y0 + y;
-  const int count = lists.disperses() ? 3 : 2;
+  Image<glm::vec4>* kept[kReadSums];
+  std::size_t places[kReadSums], count = 0;
+  for (std::size_t k = kFirstRead; k < kAddedSums; ++k) {
+    if (planes.sums()[k]->empty()) continue;
+    kept[count] = planes.sums()[k];
+    places[count++] = k;
+  }
   for (int x = 0; x < lists.window.width(); ++x) {
     const auto pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.window.width()) + static_cast<std::size_t>(x);
     float diffuse = std::numeric_limits<float>::infinity();
-    glm::vec4 sums[std::size(kScattering)] = {glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
     terms.clear();
     for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
       if (!takesPart(lists.fragments[i], lists.solid.at(x, y))) continue;
       LayerTerms one;
       addScattering(lists, i, one);
-      ScatteringTerms kept;
-      for (int k = 0; k < count; ++k) kept.sums[k] = one.sums[static_cast<std::size_t>(kScattering[k])];
-      terms.push_back(kept);
+      ScatteringTerms read;
+      for (std::size_t k = 0; k < count; ++k) read.sums[k] = one.sums[places[k]];
+      terms.push_back(read);
       diffuse = std::min(diffuse, one.diffuseZ);
     }
-    for (int k = 0; k < count && !terms.empty(); ++k) sums[k] = summed(terms, static_cast<std::size_t>(k));
-    planes.light.at(left + x, py) = sums[0];
-    planes.refraction.at(left + x, py) = sums[1];
-    if (planes.disperses()) planes.dispersion.at(left + x, py) = sums[2];
+    for (std::size_t k = 0; k < count; ++k)
+      kept[k]->at(left + x, py) = terms.empty() ? glm::vec4(0.0f) : summed(terms, k);
     planes.diffuseZ.at(left + x, py) = diffuse;
   }
 }
@@ -81,21 +86,22 @@ PLD_CLONES void foldScatteringRow(const FragmentLists& lists, int y, std::vector
 
 bool foldExactScattering(const FragmentLists& lists, OitPlanes& planes) {
   copySolids(lists, planes);
-  if (lists.disperses()) addDispersionPlane(planes);
+  const LayerModel layers = modelOf(lists);
+  addPlanes(planes, layers);
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;
     std::vector<ScatteringTerms> terms;
     for (int y = rows.begin(); y != rows.end(); ++y) foldScatteringRow(lists, y, terms, planes);
   });
-  return anyScatters(lists);
+  return layers.scatters();
 }
 
 void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight, int normalisation,
                OitPlanes& planes) {
   copySolids(lists, planes);
-  const bool scatters = anyScatters(lists);
-  if (scatters) addScatterPlanes(planes);
-  if (lists.disperses()) addDispersionPlane(planes);
+  const LayerModel layers = modelOf(lists);
+  const bool scatters = layers.scatters();
+  addPlanes(planes, layers);
   const PixelSums pixels(planes);
   const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
   tbb::parallel_for(tbb::blocked_range<int>(0, lists.window.height()), [&](const tbb::blocked_range<int>& rows) {

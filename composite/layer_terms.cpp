@@ -36,9 +36,13 @@ void addScattering(const FragmentLists& lists, std::size_t place, LayerTerms& te
     termOf(terms.sums, PlaneSum::dispersion) = shading::packDispersion(layer, scatter, lists.dispersion[place]);
 }
 
-PixelSums::PixelSums(OitPlanes& planes)
-    : images_{&planes.radiance, &planes.weight,     &planes.opacity,   &planes.depth,
-              &planes.light,    &planes.refraction, &planes.dispersion} {
+void setColumns(FragmentLists& lists, std::size_t place, const ScatterTerms& sums) {
+  const auto sumOf = [&](PlaneSum sum) { return sums[static_cast<std::size_t>(sum) - kFirstScatterSum]; };
+  if (lists.disperses())
+    lists.dispersion[place] = shading::dispersionOf(sumOf(PlaneSum::dispersion), sumOf(PlaneSum::refraction).z);
+}
+
+PixelSums::PixelSums(OitPlanes& planes) : images_(planes.sums()) {
   for (Image<glm::vec4>*& image : images_)
     if (image->empty()) image = nullptr;
 }

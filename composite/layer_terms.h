@@ -12,6 +12,9 @@ namespace pellucid {
 // By PlaneSum, packed as shaders/shared packs them.
 using PlaneTerms = std::array<glm::vec4, kAddedSums>;
 
+// Of these what scattering adds, from kFirstScatterSum on.
+using ScatterTerms = std::array<glm::vec4, kScatterSums>;
+
 struct LayerTerms {
   PlaneTerms sums{};
   float frontZ = std::numeric_limits<float>::infinity(),
@@ -23,6 +26,9 @@ struct LayerTerms {
 void addSums(const FragmentLists& lists, std::size_t place, const shading::WeightSettings& weight, int normalisation,
              LayerTerms& terms);
 void addScattering(const FragmentLists& lists, std::size_t place, LayerTerms& terms);
+
+// The columns of a fragment that stands for all layers of such sums: the means that a pixel's planes tell.
+void setColumns(FragmentLists& lists, std::size_t place, const ScatterTerms& sums);
 
 // The planes that the terms go to, one pixel at a time. Those that are not kept are left out.
 class PixelSums {

@@ -40,7 +40,7 @@ Camera cameraOver(const Camera& camera, const Window& display, const Window& cov
 // Sums of one pixel, and what scattering adds to them.
 struct Upsampled {
   shading::LowSums sums = shading::noTexels();
-  glm::vec4 refraction{0.0f}, dispersion{0.0f};
+  ScatterTerms scatter{};
   float refractionZ = 0.0f, diffuseZ = INFINITY;
 };
 
@@ -53,6 +53,7 @@ class Upsampler {
         texels_.at(x, y) = shading::lowTexelOf(shading::unpackSums(low_.at(x, y)), low_.solid.at(x, y),
                                                low_.frontZ.at(x, y), low_.info.weight);
     });
+    readScatter();
     markNear();
     surface_.emplace(view, texels_, sample);
   }
@@ -65,12 +66,25 @@ class Upsampler {
     layer.low = shading::lowLayerOf(up.sums);
     layer.nearestZ = up.sums.nearestZ;
     // What only bends or spreads counts too, or nobody would look where to.
-    layer.bends = low_.scatters() && (up.refraction.z > 0.0f || up.refraction.w > 0.0f);
+    const glm::vec4& refraction = up.scatter.front();
+    layer.bends = low_.scatters() && (refraction.z > 0.0f || refraction.w > 0.0f);
     if (low_.scatters()) setScatter(up, layer);
     return layer;
   }
 
  private:
+  // Its planes of scattering, and what brings their numbers from texels to pixels.
+  void readScatter() {
+    const auto factor = static_cast<float>(view_.factor);
+    const float powers[] = {1.0f, factor, factor * factor};
+    for (const PlaneSpec& plane : planesOf(modelOf(low_))) {
+      if (!isOfScattering(plane.sum)) continue;
+      const auto sum = static_cast<std::size_t>(plane.sum), k = sum - kFirstScatterSum;
+      scatter_[k] = low_.sums()[sum];
+      for (int c = 0; c < 4; ++c) inPixels_[k][c] = powers[plane.pixelPower[static_cast<std::size_t>(c)]];
+    }
+  }
+
   // Blocks within reach of a texel that holds something.
   void markNear() {
     near_ = Image<std::uint8_t>(texels_.width(), texels_.height(), 0);
@@ -95,25 +109,24 @@ class Upsampler {
   }
 
   void scatterTexel(Upsampled& up, int i, int j, float share) const {
-    up.refraction += share * low_.refraction.at(i, j);
+    for (std::size_t k = 0; k < kScatterSums; ++k)
+      if (scatter_[k]) up.scatter[k] += share * scatter_[k]->at(i, j);
     up.refractionZ += share * low_.light.at(i, j).a;
-    if (low_.disperses()) up.dispersion += share * low_.dispersion.at(i, j);
     if (share > 0.0f) up.diffuseZ = std::min(up.diffuseZ, low_.diffuseZ.at(i, j));
   }
 
   // Offsets and spreads of the low view are in texels.
   void setScatter(const Upsampled& up, UpsampledLayer& layer) const {
     if (!(up.sums.share > 0.0f)) return;
-    const auto factor = static_cast<float>(view_.factor);
-    const glm::vec4 mean = up.refraction / up.sums.share;
-    layer.refraction = glm::vec4(factor * mean.x, factor * mean.y, mean.z, factor * factor * mean.w);
+    for (std::size_t k = 0; k < kScatterSums; ++k) layer.scatter[k] = inPixels_[k] * (up.scatter[k] / up.sums.share);
     layer.refractionZ = up.refractionZ / up.sums.share;
-    if (low_.disperses()) layer.dispersion = factor * (up.dispersion / up.sums.share);
-    layer.diffuseZ = mean.w > 0.0f ? up.diffuseZ : INFINITY;
+    layer.diffuseZ = layer.refraction().w > 0.0f ? up.diffuseZ : INFINITY;
   }
 
   const OitPlanes& low_;
   const LowView& view_;
+  std::array<const Image<glm::vec4>*, kScatterSums> scatter_{};  // null: the planes lack it
+  ScatterTerms inPixels_{};
   LowShares shares_;
   Image<shading::LowTexel> texels_;
   Image<std::uint8_t> near_;
@@ -169,21 +182,23 @@ void addLayer(const UpsampledLayer& layer, OitPlanes& planes, int x, int y) {
 }
 
 void addLayerScatter(const UpsampledLayer& layer, OitPlanes& planes, int x, int y) {
-  planes.refraction.at(x, y) += layer.refraction;
+  for (std::size_t k = 0; k < kScatterSums; ++k)
+    if (Image<glm::vec4>& plane = *planes.sums()[kFirstScatterSum + k]; !plane.empty())
+      plane.at(x, y) += layer.scatter[k];
   planes.light.at(x, y).a += layer.refractionZ;
-  if (planes.disperses()) planes.dispersion.at(x, y) += layer.dispersion;
   planes.diffuseZ.at(x, y) = std::min(planes.diffuseZ.at(x, y), layer.diffuseZ);
 }
 
 // Mean offset of a layer, float pixels.
 glm::vec2 offsetOf(const UpsampledLayer& layer) {
-  return layer.refraction.z > 0.0f ? glm::vec2(layer.refraction) / layer.refraction.z : glm::vec2(0.0f);
+  const glm::vec4& sums = layer.refraction();
+  return sums.z > 0.0f ? glm::vec2(sums) / sums.z : glm::vec2(0.0f);
 }
 
 shading::PublishedTargets publishedOf(const UpsampledLayer& layer) {
   shading::Scatter scatter;
   scatter.offset = offsetOf(layer);
-  scatter.variance = layer.refraction.w;
+  scatter.variance = layer.refraction().w;
   const glm::vec3 opacity = glm::vec3(1.0f) - layer.low.layer.transmission;
   return shading::publishedTargets(layer.low.weight * layer.low.layer.radiance,
                                    layer.low.weight * shading::meanOf(opacity), opacity, scatter);
@@ -208,8 +223,7 @@ void addUpsampled(const UpsampledLayer& layer, const OitPlanes& low, OitPlanes& 
 
 void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, OitPlanes& planes,
                       PublishedClamps* clamps) {
-  if (low.scatters()) addScatterPlanes(planes);
-  if (low.disperses() && !planes.published()) addDispersionPlane(planes);
+  addPlanes(planes, modelOf(low));
   tbb::enumerable_thread_specific<PublishedClamps> own;
   upsample(low, view, sample,
            [&](int x, int y, const UpsampledLayer& layer) { addUpsampled(layer, low, planes, x, y, own.local()); });
@@ -219,8 +233,7 @@ void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 samp
 
 void addLowResolution(const OitPlanes& low, const LowView& view, glm::dvec2 sample, const PixelPlaces& places,
                       OitPlanes& planes, PublishedClamps& clamps) {
-  if (low.scatters()) addScatterPlanes(planes);
-  if (low.disperses() && !planes.published()) addDispersionPlane(planes);
+  addPlanes(planes, modelOf(low));
   const Upsampler upsampler(low, view, sample);
   const auto width = static_cast<std::size_t>(planes.data.width());
   tbb::enumerable_thread_specific<PublishedClamps> own;
@@ -236,13 +249,8 @@ OitPlanes planesOfVeil(const Veil& veil, const Image<float>& meanZ, const LowVie
   OitPlanes planes = emptyPlanes(view.gbuffer.display, view.gbuffer.data);
   planes.info.weight.kind = shading::PLD_WEIGHT_UNIFORM;
   if (scatter) {
-    addScatterPlanes(planes);
-    planes.refraction = scatter->refraction;
+    for (std::size_t k = kFirstScatterSum; k < kAddedSums; ++k) *planes.sums()[k] = *scatter->sums()[k];
     planes.diffuseZ = scatter->diffuseZ;
-    if (scatter->disperses()) {
-      addDispersionPlane(planes);
-      planes.dispersion = scatter->dispersion;
-    }
   }
   for (std::size_t i = 0; i < veil.touched.size(); ++i) {
     if (!veil.touched[i]) continue;
@@ -275,7 +283,7 @@ Fragment fragmentOf(const UpsampledLayer& layer) {
   fragment.transmission = layer.low.layer.transmission;
   fragment.z = layer.low.shows ? layer.low.layer.z : layer.nearestZ;
   fragment.offset = offsetOf(layer);
-  fragment.variance = layer.refraction.w;
+  fragment.variance = layer.refraction().w;
   fragment.identity = kLowIdentity;
   // What hides all is still a layer here, not the pixel's solid.
   if (shading::isSolid(fragment.coverage, fragment.transmission)) fragment.coverage = std::nextafter(1.0f, 0.0f);
@@ -291,14 +299,12 @@ bool isThere(const Fragment& fragment) {
 LowResolutionFragments::LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
                                                const Window& data)
     : data_(data), scatters_(low.scatters()) {
-  LayerModel layers;
-  layers.disperses = low.disperses();
-  layers_.resize(static_cast<std::size_t>(data.width()) * static_cast<std::size_t>(data.height()), layers);
+  layers_.resize(static_cast<std::size_t>(data.width()) * static_cast<std::size_t>(data.height()), modelOf(low));
   upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
     if (!layer.isThere()) return;
     const std::size_t place = indexOf({x, y});
     layers_.fragments[place] = fragmentOf(layer);
-    if (low.disperses() && layer.refraction.z > 0.0f) layers_.dispersion[place] = layer.dispersion / layer.refraction.z;
+    setColumns(layers_, place, layer.scatter);
   });
 }
 

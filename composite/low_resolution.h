@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "composite/layer_terms.h"
 #include "composite/probe_lists.h"
 #include "composite/veil.h"
 #include "gbuffer/accum.h"
@@ -38,12 +39,12 @@ LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const C
 // What texels become in one pixel: a single layer.
 struct UpsampledLayer {
   shading::LowLayer low;
-  bool bends = false;          // it refracts or diffuses
-  float nearestZ = 0.0f;       // of its layers, planar metres
-  glm::vec4 refraction{0.0f};  // as OitPlanes::refraction holds them, float pixels of full resolution
-  glm::vec4 dispersion{0.0f};  // as OitPlanes::dispersion
+  bool bends = false;      // it refracts or diffuses
+  float nearestZ = 0.0f;   // of its layers, planar metres
+  ScatterTerms scatter{};  // of planes, float pixels of full resolution
   float refractionZ = 0.0f, diffuseZ = std::numeric_limits<float>::infinity();
   bool isThere() const { return low.shows || bends; }
+  const glm::vec4& refraction() const { return scatter.front(); }  // as OitPlanes::refraction holds it
 };
 
 // Brings sums of a low view to full resolution, pixel by pixel. Calls `each` for every pixel that holds something, row

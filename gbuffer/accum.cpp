@@ -68,10 +68,17 @@ void addScatterPlanes(OitPlanes& planes) {
   planes.diffuseZ = Image<float>(width, height, kNothing);
 }
 
-void addDispersionPlane(OitPlanes& planes) {
+void addPlane(OitPlanes& planes, PlaneSum sum) {
+  if (!isOfScattering(sum)) return;
   addScatterPlanes(planes);
-  if (!planes.disperses())
-    planes.dispersion = Image<glm::vec4>(planes.data.width(), planes.data.height(), glm::vec4(0.0f));
+  Image<glm::vec4>& plane = *planes.sums()[static_cast<std::size_t>(sum)];
+  if (plane.empty()) plane = Image<glm::vec4>(planes.data.width(), planes.data.height(), glm::vec4(0.0f));
+}
+
+void addPlanes(OitPlanes& planes, LayerModel layers) {
+  if (layers.scatters()) addScatterPlanes(planes);
+  if (planes.published()) layers.tier = PlaneTier::published;
+  for (const PlaneSpec& plane : planesOf(layers)) addPlane(planes, plane.sum);
 }
 
 void mergePlanes(OitPlanes& a, const OitPlanes& b) {
@@ -86,8 +93,7 @@ void mergePlanes(OitPlanes& a, const OitPlanes& b, const std::string& fileA, con
     scaled.info.weight = a.info.weight;
     return mergePlanes(a, scaled, fileA, fileB);
   }
-  if (b.scatters()) addScatterPlanes(a);
-  if (b.disperses()) addDispersionPlane(a);
+  addPlanes(a, modelOf(b));
   for (const PlaneSpec& plane : planesOf(modelOf(b)))
     if (!(a.published() && plane.sum == PlaneSum::depth)) mergePlane(plane, a, b);
   if (a.published()) mergePublished(a, b);

@@ -1,5 +1,6 @@
 // Order-independent sums of the transparent layers: what the transparent pass hands to resolve.
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
 #include <string>
 
@@ -7,6 +8,7 @@
 #include "gbuffer/colour_space.h"
 #include "gbuffer/image.h"
 #include "gbuffer/weight_text.h"
+#include "shaders/plane_layout.h"
 #include "shaders/shading.h"
 
 namespace pellucid {
@@ -44,6 +46,13 @@ struct OitPlanes {
   bool scatters() const { return !refraction.empty(); }
   bool published() const { return info.tier == "published"; }
   bool disperses() const { return !dispersion.empty(); }
+  // What adds, by PlaneSum.
+  std::array<Image<glm::vec4>*, kAddedSums> sums() {
+    return {&radiance, &weight, &opacity, &depth, &light, &refraction, &dispersion};
+  }
+  std::array<const Image<glm::vec4>*, kAddedSums> sums() const {
+    return {&radiance, &weight, &opacity, &depth, &light, &refraction, &dispersion};
+  }
 
   shading::OitTargets at(int x, int y) const {
     shading::OitTargets targets;
@@ -64,8 +73,22 @@ OitPlanes emptyPublishedPlanes(const Window& display, const Window& data);
 OitPlanes emptyScatterPlanes(const Window& display, const Window& data);
 // Gives planes that lack them those of refraction and diffusion, in which nothing scatters.
 void addScatterPlanes(OitPlanes& planes);
-// The same with that of dispersion; scatter planes included.
-void addDispersionPlane(OitPlanes& planes);
+// The same with the plane of a sum, when it is one of scattering; all planes have the others.
+void addPlane(OitPlanes& planes, PlaneSum sum);
+// Those that such layers need, as far as the planes' tier keeps them.
+void addPlanes(OitPlanes& planes, LayerModel layers);
+
+// The layers that such planes have room for: as sums in floats, in which the published tier lies too.
+inline LayerModel modelOf(const OitPlanes& planes) {
+  LayerModel model;
+  model.weight = planes.info.weight.kind;
+  model.normalisation = planes.info.normalisation;
+  model.refracts = model.diffuses = planes.scatters();
+  model.disperses = planes.disperses();
+  model.solids = true;
+  return model;
+}
+
 // Adds b to a (nearest solid wins only when both are the same: solidHash). Throws MeaningError when they do not match.
 void mergePlanes(OitPlanes& a, const OitPlanes& b);
 

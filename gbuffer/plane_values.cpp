@@ -16,21 +16,9 @@ PlaneValues scalarsOf(Image<float>& image) {
 }  // namespace
 
 PlaneValues valuesOf(OitPlanes& planes, PlaneSum sum, int component) {
+  const auto added = static_cast<std::size_t>(sum);
+  if (added < kAddedSums) return componentOf(*planes.sums()[added], component);
   switch (sum) {
-    case PlaneSum::radiance:
-      return componentOf(planes.radiance, component);
-    case PlaneSum::weight:
-      return componentOf(planes.weight, component);
-    case PlaneSum::opacity:
-      return componentOf(planes.opacity, component);
-    case PlaneSum::depth:
-      return componentOf(planes.depth, component);
-    case PlaneSum::light:
-      return componentOf(planes.light, component);
-    case PlaneSum::refraction:
-      return componentOf(planes.refraction, component);
-    case PlaneSum::dispersion:
-      return componentOf(planes.dispersion, component);
     case PlaneSum::nearestZ:
       return scalarsOf(component == 0 ? planes.frontZ : planes.diffuseZ);
     case PlaneSum::solid:
@@ -51,16 +39,6 @@ void addSums(OitPlanes& planes, int x, int y, const shading::OitTargets& sums) {
   planes.opacity.at(x, y) += sums.opacity;
   planes.depth.at(x, y) += sums.depth;
   planes.light.at(x, y) += sums.light;
-}
-
-LayerModel modelOf(const OitPlanes& planes) {
-  LayerModel model;
-  model.weight = planes.info.weight.kind;
-  model.normalisation = planes.info.normalisation;
-  model.refracts = model.diffuses = planes.scatters();
-  model.disperses = planes.disperses();
-  model.solids = true;
-  return model;
 }
 
 PlaneValues valuesOf(RimPlanes& planes, PlaneSum sum, int component) {

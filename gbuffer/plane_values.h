@@ -29,7 +29,4 @@ ConstPlaneValues valuesOf(const RimPlanes& planes, PlaneSum sum, int component);
 // Adds what a layer adds to the sums of one pixel.
 void addSums(OitPlanes& planes, int x, int y, const shading::OitTargets& sums);
 
-// The layers that such planes have room for: as sums in floats, in which the published tier lies too.
-LayerModel modelOf(const OitPlanes& planes);
-
 }  // namespace pellucid

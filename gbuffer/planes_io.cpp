@@ -160,17 +160,14 @@ NewExr fileOf(const OitPlanes& planes, const RimPlanes& rims) {
     }
     file.channels.push_back(std::move(channel));
   };
-  const auto addGroup = [&](ChannelGroup group, bool there) {
-    if (!there) return;
-    for (const PlaneChannel& channel : channelsOf(group, planes.published())) {
+  for (const ChannelGroup group : kChannelGroups) {
+    const std::vector<PlaneChannel>& channels = channelsOf(group, planes.published());
+    if (channels.empty() || !channelValues(planes, rims, channels.front())) continue;
+    for (const PlaneChannel& channel : channels) {
       const ConstPlaneValues values = channelValues(planes, rims, channel);
       addChannel(channel.name, [values](std::size_t i) { return values[i]; });
     }
-  };
-  addGroup(ChannelGroup::sums, true);
-  addGroup(ChannelGroup::scattering, planes.scatters());
-  addGroup(ChannelGroup::dispersion, planes.disperses());
-  addGroup(ChannelGroup::rims, !rims.empty());
+  }
 
   file.attributes = {
       {"pellucid:method", planes.info.method},
@@ -202,13 +199,11 @@ OitPlanes planesOf(const ExrPart& part, const std::string& path, RimPlanes* rims
   planes.info = info;
   planes.camera = camera;
   RimPlanes found;
-  for (const ChannelGroup group :
-       {ChannelGroup::sums, ChannelGroup::scattering, ChannelGroup::dispersion, ChannelGroup::rims}) {
+  for (const ChannelGroup group : kChannelGroups) {
     if (!hasGroup(part, group, published, path)) continue;
-    if (group == ChannelGroup::scattering) addScatterPlanes(planes);
-    if (group == ChannelGroup::dispersion) addDispersionPlane(planes);
     if (group == ChannelGroup::rims) found = RimPlanes(part.data.width(), part.data.height());
     for (const PlaneChannel& channel : channelsOf(group, published)) {
+      addPlane(planes, channel.sum);
       const PlaneValues values = channelValues(planes, found, channel);
       readPlane(part, channel.name, channel.finite, path, [values](std::size_t i, float value) { values[i] = value; });
     }

@@ -149,7 +149,8 @@ std::vector<PlaneSpec> overPlanes(const LayerModel& model) {
 }  // namespace
 
 bool isOfScattering(PlaneSum sum) {
-  return sum == PlaneSum::refraction || sum == PlaneSum::dispersion;
+  const auto place = static_cast<std::size_t>(sum);
+  return place >= kFirstScatterSum && place < kAddedSums;
 }
 
 int componentsOf(PlaneFormat format) {

@@ -51,7 +51,8 @@ struct LayerConflict {
 };
 LayerConflict conflictOf(const LayerModel& model);
 
-// Sums of MODEL section 3 by the names of shaders/shared. Those before `nearestZ` are vectors of four that add.
+// Sums of MODEL section 3 by the names of shaders/shared. Those before `nearestZ` are vectors of four that add; of
+// these, what scattering adds to a pixel beside its layers' sums stands from `refraction` on.
 enum class PlaneSum {
   radiance,    // A; sum of w_z o
   weight,      // W; layers
@@ -73,8 +74,10 @@ enum class PlaneSum {
   sortedLight,        // light of all layers over what is solid; layers
   sortedTransmission  // what they let through; depth of the nearest
 };
-constexpr std::size_t kAddedSums = 7;
-bool isOfScattering(PlaneSum sum);  // what refraction and diffusion add to a pixel beside its layers' sums
+constexpr std::size_t kAddedSums = static_cast<std::size_t>(PlaneSum::nearestZ);
+constexpr std::size_t kFirstScatterSum = static_cast<std::size_t>(PlaneSum::refraction);
+constexpr std::size_t kScatterSums = kAddedSums - kFirstScatterSum;
+bool isOfScattering(PlaneSum sum);
 
 enum class PlaneFormat { r16f, rg16f, rgba16f, r32f, rg32f, rgba32f, rgba8, rg8snorm };
 int componentsOf(PlaneFormat format);
@@ -130,6 +133,8 @@ struct PlaneChannel {
 };
 // Groups of channels: the first is in every file, of the others all are there or none.
 enum class ChannelGroup { sums, scattering, dispersion, rims };
+constexpr ChannelGroup kChannelGroups[] = {ChannelGroup::sums, ChannelGroup::scattering, ChannelGroup::dispersion,
+                                           ChannelGroup::rims};
 const std::vector<PlaneChannel>& channelsOf(ChannelGroup group, bool published);  // empty: the tier has none
 
 }  // namespace pellucid

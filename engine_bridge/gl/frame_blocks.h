@@ -32,7 +32,7 @@ static_assert(offsetof(FrameBlock, weightReference) == 320);
 static_assert(offsetof(FrameBlock, lightCount) == 112 && offsetof(FrameBlock, viewport) == 120);
 
 // Storage binding of the first column of lists (gbuffer/fragments.h), the others after it; as in
-// shaders/gl/list_output.glsl and replay.frag.
+// shaders/gl/scattered.glsl.
 constexpr std::uint32_t kFirstColumn = 7;
 
 }  // namespace pellucid::gl

@@ -135,8 +135,7 @@ OitPlanes TransparentPass::accumulate(const PassSettings& settings) {
     const int x = part.x0 + drawn.x0 - (area.x0 - data.x0), y = part.y0 + drawn.y0 - (area.y0 - data.y0);
     tiles += scissors.size();
     const LayerModel layers = renderer.layers();
-    if (layers.scatters()) addScatterPlanes(planes);
-    if (layers.disperses) addDispersionPlane(planes);
+    addPlanes(planes, layers);
     describe(renderer, settings, layers, impl_->statistics);
     if (published) {
       gl::PublishedTargets& targets = impl_->publishedTargets(part.width(), part.height());

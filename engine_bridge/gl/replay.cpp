@@ -55,8 +55,7 @@ OitPlanes replayFragments(GlContext&, const FragmentLists& lists, const shading:
   glNamedBufferData(frameBuffer.name(), sizeof(frame), &frame, GL_STATIC_DRAW);
   gl::checkGl("uploading fragments to replay");
 
-  if (anyScatters(lists)) addScatterPlanes(planes);
-  if (lists.disperses()) addDispersionPlane(planes);
+  addPlanes(planes, modelOf(lists));
   std::vector<gl::Buffer> columnBuffers;
   for (std::size_t k = 0; k < kFragmentColumns; ++k) {
     columnBuffers.push_back(gl::Buffer::make());

@@ -150,8 +150,10 @@ TEST(PlaneLayout, EveryChannelComesBackFromAFile) {
   for (const bool published : {false, true}) {
     const Window window{2, 1, 9, 6};
     OitPlanes planes = published ? emptyPublishedPlanes(window, window) : emptyPlanes(window, window);
-    addScatterPlanes(planes);
-    if (!published) addDispersionPlane(planes);
+    LayerModel layers;
+    layers.refracts = layers.diffuses = layers.disperses = true;
+    addPlanes(planes, layers);
+    EXPECT_EQ(planes.disperses(), !published);
     RimPlanes rims;
     if (!published) rims = RimPlanes(window.width(), window.height());
     const std::size_t pixels = planes.radiance.size();
@@ -159,8 +161,7 @@ TEST(PlaneLayout, EveryChannelComesBackFromAFile) {
     std::set<std::pair<PlaneSum, int>> places;
     float number = 0.5f;
     const auto eachChannel = [&](auto&& each) {
-      for (const ChannelGroup group :
-           {ChannelGroup::sums, ChannelGroup::scattering, ChannelGroup::dispersion, ChannelGroup::rims})
+      for (const ChannelGroup group : kChannelGroups)
         for (const PlaneChannel& channel : channelsOf(group, published)) each(channel);
     };
     const auto valuesIn = [](auto& sums, auto& ofRims, const PlaneChannel& channel) {

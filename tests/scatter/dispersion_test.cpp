@@ -135,7 +135,7 @@ TEST(Dispersion, NoneOrSwitchedOffNeedsNoPlane) {
 TEST(Dispersion, LookupsLandWhereEachChannelPoints) {
   Random random(41);
   ScatterScene scene(96, 64);
-  addDispersionPlane(scene.planes);
+  addPlane(scene.planes, PlaneSum::dispersion);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 96; ++x) {
       scene.backdrop.colour.at(x, y) = glm::vec4(glm::vec3(static_cast<float>(x) + 0.5f), 1);
@@ -162,7 +162,7 @@ TEST(Dispersion, LookupsLandWhereEachChannelPoints) {
 // A post in front shows in no channel, though only one of them lands on it.
 TEST(Dispersion, PostInFrontShowsInNoChannel) {
   ScatterScene scene(64, 8, glm::vec4(0.2f, 0.2f, 0.2f, 1), 20.0f);
-  addDispersionPlane(scene.planes);
+  addPlane(scene.planes, PlaneSum::dispersion);
   for (int y = 0; y < 8; ++y) {
     for (int x = 30; x < 34; ++x) scene.backdrop.colour.at(x, y) = glm::vec4(1), scene.backdrop.z.at(x, y) = 2.0f;
     for (int x = 0; x < 30; ++x) {

@@ -44,7 +44,7 @@ struct Shot {
     gbuffer.beauty = Image<glm::vec4>(width, height);
     gbuffer.viewZ = Image<float>(width, height);
     planes = emptyPlanes(gbuffer.display, gbuffer.data);
-    if (scatters) addDispersionPlane(planes);
+    if (scatters) addPlane(planes, PlaneSum::dispersion);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         gbuffer.beauty.at(x, y) = glm::vec4(random.uniformf(), 40 * random.uniformf(), (x / 9 + y / 9) % 2, 1);

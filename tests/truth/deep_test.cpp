@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "composite/deep/deep_source.h"
 #include "composite/deep/flatten.h"
 #include "composite/deep/tidy.h"
 #include "gbuffer/deep_io.h"
@@ -214,6 +216,41 @@ TEST(Deep, PartsByName) {
   EXPECT_THROW(resolveDeep(document, "left"), MeaningError);
   document.parts[0].view = "left";
   EXPECT_THROW(resolveDeep(document, "smoke"), MeaningError) << "a part of a view goes by that";
+}
+
+TEST(Deep, LayersKeepTheirColumnsWhereOthersAreHidden) {
+  const std::string folder = freshFolder("deep-columns");
+  // A solid sample 2 m away in the first and the last of three pixels.
+  const BruteSample wall{2.0L, 2.0L, {0.5L, 0.5L, 0.5L, 1.0L}, {1.0L, 1.0L, 1.0L, 1.0L}};
+  writeDeep(folder + "/deep.exr", rowsOf({{wall}, {}, {wall}}, 3), kNames);
+  GBuffer shot;
+  shot.display = shot.data = {0, 0, 3, 1};
+  shot.viewZ = Image<float>(3, 1, std::numeric_limits<float>::infinity());
+  FragmentLists lists;
+  lists.window = shot.data;
+  lists.solid = Image<glm::vec4>(3, 1, glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity()));
+  lists.offsets.assign(1, 0);
+  for (int pixel = 0; pixel < 3; ++pixel) {
+    for (const float z : {5.0f, 1.0f}) {
+      Fragment fragment{};
+      fragment.z = z;
+      fragment.offset = glm::vec2(z);
+      lists.append(fragment);
+    }
+    lists.endPixel();
+  }
+  for (FragmentColumn* column : lists.columns())
+    for (const Fragment& fragment : lists.fragments) column->emplace_back(fragment.z);
+  std::vector<std::unique_ptr<DeepSource>> sources;
+  const DepthConverter metres({}, PixelType::float32, std::nullopt, 1.0, nullptr, shot.display, "deep.exr");
+  sources.push_back(std::make_unique<DeepSource>(folder + "/deep.exr", metres, shot, 0));
+  FragmentLists merged;
+  mergeDeep(lists, sources, shot, VolumeRule::midDepth, UINT64_MAX, [&](const FragmentLists& all) { merged = all; });
+  ASSERT_EQ(merged.fragments.size(), 4u);
+  for (const FragmentColumn* column : merged.columns()) {
+    ASSERT_EQ(column->size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ((*column)[i], glm::vec4(merged.fragments[i].z)) << i;
+  }
 }
 
 TEST(Deep, WhatIsLackingIsNamed) {
