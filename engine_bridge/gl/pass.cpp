@@ -51,28 +51,7 @@ void describe(const gl::Renderer& renderer, const PassSettings& settings, const 
   statistics.bitsPerPixel = usedBits(layers);
   statistics.solidBits = renderer.hasSolids() ? bitsOf(planesOf(layers, PlaneStage::solids)) + 32 : 0;  // and depth
   statistics.passes = renderer.hasSolids() ? 3 : 1;
-  statistics.pruned.clear();
-  const auto plane = [&](bool kept, const char* name, const char* reason) {
-    if (!kept) statistics.pruned.push_back(std::string(name) + ": " + reason);
-  };
-  if (!layers.published()) {
-    plane(layers.coloured, "coloured opacity", "no material transmits colour");
-    plane(holds(layers, PlaneSum::light), "additive light", "no material adds light or transmits");
-  }
-  plane(renderer.hasSolids(), "solid pass", "no fragment can hide everything");
-  // Read like the picture's own planes, not written.
-  plane(renderer.occludes(), "inferred occlusion",
-        renderer.wouldOcclude(settings) ? "switched off" : "no cut-out material, or no surroundings");
-  plane(layers.scatters(), "scattering planes", "nothing refracts or diffuses");
-  plane(
-      renderer.refracts(), "refraction",
-      settings.scatter.refract == shading::PLD_REFRACT_OFF ? "switched off" : "no material transmits through a volume");
-  plane(layers.disperses, "dispersion",
-        layers.published()            ? "the published targets hold one offset for all channels"
-        : settings.scatter.dispersion ? "no refracting material disperses"
-                                      : "switched off");
-  plane(renderer.diffuses(), "diffusion",
-        settings.scatter.k0 > 0.0f ? "no material has a collimation below 1" : "switched off");
+  statistics.pruned = gl::leftOut(renderer.features(), settings, renderer.wouldOcclude(settings));
 }
 
 }  // namespace

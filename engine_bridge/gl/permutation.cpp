@@ -5,6 +5,56 @@
 
 namespace pellucid::gl {
 
+void Needs::addScattering(const Material& material) {
+  refracts = refracts || pellucid::refracts(material);
+  diffuses = diffuses || pellucid::diffuses(material);
+  disperses = disperses || pellucid::disperses(material);
+}
+
+Needs either(const Needs& a, const Needs& b) {
+  return {a.solids || b.solids,       a.adds || b.adds,         a.refracts || b.refracts, a.diffuses || b.diffuses,
+          a.disperses || b.disperses, a.coloured || b.coloured, a.infers || b.infers};
+}
+
+void chooseScattering(const Needs& needs, const PassSettings& settings, FrameFeatures& frame) {
+  const bool all = !settings.scatter.prune;
+  frame.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (needs.refracts || all);
+  frame.disperses = frame.refracts && settings.scatter.dispersion && (needs.disperses || all);
+  const bool fogDiffuses = settings.fog && settings.fog->diffuses();
+  frame.diffuses = (settings.scatter.k0 > 0.0f && (needs.diffuses || all)) || fogDiffuses;
+}
+
+void scatterNothing(FrameFeatures& frame) {
+  frame.refracts = frame.diffuses = frame.disperses = false;
+}
+
+std::vector<std::string> leftOut(const FrameFeatures& frame, const PassSettings& settings, bool wouldOcclude) {
+  const LayerModel layers = layersOf(frame, settings);
+  std::vector<std::string> reasons;
+  const auto plane = [&](bool kept, const char* name, const char* reason) {
+    if (!kept) reasons.push_back(std::string(name) + ": " + reason);
+  };
+  if (!layers.published()) {
+    plane(layers.coloured, "coloured opacity", "no material transmits colour");
+    plane(holds(layers, PlaneSum::light), "additive light", "no material adds light or transmits");
+  }
+  plane(frame.solids, "solid pass", "no fragment can hide everything");
+  // Read like the picture's own planes, not written.
+  plane(frame.occludes, "inferred occlusion",
+        wouldOcclude ? "switched off" : "no cut-out material, or no surroundings");
+  plane(layers.scatters(), "scattering planes", "nothing refracts or diffuses");
+  plane(
+      frame.refracts, "refraction",
+      settings.scatter.refract == shading::PLD_REFRACT_OFF ? "switched off" : "no material transmits through a volume");
+  plane(layers.disperses, "dispersion",
+        layers.published()            ? "the published targets hold one offset for all channels"
+        : settings.scatter.dispersion ? "no refracting material disperses"
+                                      : "switched off");
+  plane(frame.diffuses, "diffusion",
+        settings.scatter.k0 > 0.0f ? "no material has a collimation below 1" : "switched off");
+  return reasons;
+}
+
 std::vector<std::string> surfaceDefines(const Material& material, bool vertexColours, const FrameFeatures& frame,
                                         bool infers, bool points) {
   std::vector<std::string> defines;

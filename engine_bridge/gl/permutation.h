@@ -45,6 +45,22 @@ struct FrameFeatures {
   bool scatters() const { return refracts || diffuses; }
 };
 
+// What materials have.
+struct Needs {
+  bool solids = false, adds = false, refracts = false, diffuses = false, disperses = false;
+  bool coloured = false, infers = false;  // transmit colour; have rims whose occlusion is inferred
+
+  void addScattering(const Material& material);
+};
+Needs either(const Needs& a, const Needs& b);
+
+// What layers scatter in a pass with these settings; nothing.
+void chooseScattering(const Needs& needs, const PassSettings& settings, FrameFeatures& frame);
+void scatterNothing(FrameFeatures& frame);
+// What such a pass leaves out, and why.
+//   wouldOcclude  with occluders
+std::vector<std::string> leftOut(const FrameFeatures& frame, const PassSettings& settings, bool wouldOcclude);
+
 // Defines for shaders/gl/transparent.frag.
 //   points  the primitive's triangles are particles
 //   infers  the material's rims take their occlusion from their neighbours (infersOcclusion)

@@ -132,11 +132,9 @@ void Renderer::classify() {
       Needs& needs = needs_[material.lowResolution ? 1 : 0];
       needs.solids = needs.solids || shader.canBeSolid;
       needs.adds = needs.adds || canBeAdditive(material);
-      needs.refracts = needs.refracts || pellucid::refracts(material);
-      needs.diffuses = needs.diffuses || pellucid::diffuses(material);
+      needs.addScattering(material);
       needs.coloured = needs.coloured || canTransmitColour(material, shader.vertexColours);
       needs.infers = needs.infers || infers[static_cast<std::size_t>(primitive.material)];
-      needs.disperses = needs.disperses || pellucid::disperses(material);
       shader.infers = infers[static_cast<std::size_t>(primitive.material)];
     }
     shaders_.push_back(std::move(shader));
@@ -174,11 +172,9 @@ Window Renderer::drawnPart() const {
   return {met.x0 - superTile_.x0, met.y0 - superTile_.y0, met.x1 - superTile_.x0, met.y1 - superTile_.y0};
 }
 
-Renderer::Needs Renderer::needsOf(const PassSettings& settings) const {
+Needs Renderer::needsOf(const PassSettings& settings) const {
   if (settings.layers != LayerChoice::all) return needs_[settings.layers == LayerChoice::lowResolution ? 1 : 0];
-  const Needs &a = needs_[0], &b = needs_[1];
-  return {a.solids || b.solids,       a.adds || b.adds,         a.refracts || b.refracts, a.diffuses || b.diffuses,
-          a.disperses || b.disperses, a.coloured || b.coloured, a.infers || b.infers};
+  return either(needs_[0], needs_[1]);
 }
 
 void Renderer::chooseFeatures(const PassSettings& settings) {
@@ -195,10 +191,7 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   features_.lightVolume = settings.particleLight != nullptr;
   features_.solids = needs.solids || all;
   features_.adds = needs.adds || (settings.fog && settings.fog->emits());
-  features_.refracts = settings.scatter.refract != shading::PLD_REFRACT_OFF && (needs.refracts || all);
-  features_.disperses = features_.refracts && settings.scatter.dispersion && (needs.disperses || all);
-  const bool fogDiffuses = settings.fog && settings.fog->diffuses();
-  features_.diffuses = (settings.scatter.k0 > 0.0f && (needs.diffuses || all)) || fogDiffuses;
+  chooseScattering(needs, settings, features_);
   features_.grey = !needs.coloured && !all;
   // Occluders are planes of the full resolution.
   features_.occludes =
@@ -358,7 +351,8 @@ void Renderer::traceShadows(const Window& superTile) {
   const FrameFeatures whole = features_;
   features_.lights = features_.shadowRays = features_.surroundings = features_.environment = false;
   features_.solids = false;  // they are lit as well, and what they hide is not known yet
-  features_.refracts = features_.diffuses = features_.disperses = features_.occludes = false;
+  scatterNothing(features_);
+  features_.occludes = false;
   tracing_ = true;
   describeSurfaces();
   rayTable_.begin(superTile.width(), superTile.height(), lights_);

@@ -49,10 +49,9 @@ class Renderer {
   LayerModel layers() const { return layersOf(features_, settings_); }
   // What they are as Output::list has them, after begin().
   LayerModel listedLayers() const { return layersOf(features_, SumsSettings()); }
+  const FrameFeatures& features() const { return features_; }
   bool hasSolids() const { return features_.solids; }
   bool scatters() const { return features_.scatters(); }
-  bool refracts() const { return features_.refracts; }
-  bool diffuses() const { return features_.diffuses; }
   // Whether a pass with these settings would.
   bool wouldScatter(const PassSettings& settings) const;
   bool wouldOcclude(const PassSettings& settings) const;
@@ -75,11 +74,6 @@ class Renderer {
     bool canBeSolid;
     bool infers = false;                     // its rims take their occlusion from their neighbours
     const Program* programs[kOutputs] = {};  // by Output, looked up once per begin()
-  };
-  // What the materials of one resolution have.
-  struct Needs {
-    bool solids = false, adds = false, refracts = false, diffuses = false, disperses = false;
-    bool coloured = false, infers = false;  // transmit colour; have rims whose occlusion is inferred
   };
   void place();
   void classify();
@@ -105,7 +99,7 @@ class Renderer {
   std::vector<Placed> placed_;  // per instance
   std::vector<Shader> shaders_;
   int lights_ = 0;
-  Needs needs_[2];  // of full, of low resolution
+  Needs needs_[2];  // of the materials of full, of low resolution
 
   void chooseFeatures(const PassSettings& settings);
   void prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);
