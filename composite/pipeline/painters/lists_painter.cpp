@@ -69,6 +69,7 @@ class ListsPainter : public Painter {
       statistics.passes += lowStatistics.passes;
       context_.counts.add(statistics);
     }
+    low_.reset();
     mixer_->endPass(planes_);
     if (planes_.scatters() && (!planesStay() || anyScatters_)) prepareBackground(veil);
     return veil;
