@@ -70,7 +70,7 @@ PLD_CLONES void foldScatteringRow(const FragmentLists& lists, int y, std::vector
       diffuse = std::min(diffuse, one.diffuseZ);
     }
     for (int k = 0; k < count && !terms.empty(); ++k) sums[k] = summed(terms, static_cast<std::size_t>(k));
-    planes.light.at(left + x, py) = sums[0];
+    planes.refractionZ.at(left + x, py) = sums[0].a;
     planes.refraction.at(left + x, py) = sums[1];
     if (planes.disperses()) planes.dispersion.at(left + x, py) = sums[2];
     planes.diffuseZ.at(left + x, py) = diffuse;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "composite/denormals.h"
 #include "composite/fold.h"
@@ -124,11 +125,17 @@ class Upsampler {
 
 LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor,
                   const DepthPlanes* planes) {
+  Image<float> opaqueZ = gbuffer.viewZ;
+  for (std::size_t i = 0; i < solid.size(); ++i) opaqueZ[i] = std::min(opaqueZ[i], solid[i].a);
+  return lowViewOf(gbuffer, std::move(opaqueZ), camera, factor, planes);
+}
+
+LowView lowViewOf(const GBuffer& gbuffer, Image<float> opaqueZ, const Camera& camera, int factor,
+                  const DepthPlanes* planes) {
   LowView view;
   view.factor = factor;
   view.planes = planes;
-  view.opaqueZ = gbuffer.viewZ;
-  for (std::size_t i = 0; i < solid.size(); ++i) view.opaqueZ[i] = std::min(view.opaqueZ[i], solid[i].a);
+  view.opaqueZ = std::move(opaqueZ);
   const int width = (gbuffer.data.width() + factor - 1) / factor,
             height = (gbuffer.data.height() + factor - 1) / factor;
   view.gbuffer.display = view.gbuffer.data = {0, 0, width, height};
@@ -282,33 +289,47 @@ Fragment fragmentOf(const UpsampledLayer& layer) {
   return fragment;
 }
 
-bool isThere(const Fragment& fragment) {
-  return fragment.identity == kLowIdentity;
-}
-
 }  // namespace
 
-LowResolutionFragments::LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
+struct LowResolutionFragments::Source {
+  OitPlanes low;
+  std::shared_ptr<const LowView> view;
+  Upsampler upsampler;
+  Source(OitPlanes planes, std::shared_ptr<const LowView> seen, glm::dvec2 sample)
+      : low(std::move(planes)), view(std::move(seen)), upsampler(low, *view, sample) {}
+};
+
+LowResolutionFragments::LowResolutionFragments(OitPlanes low, std::shared_ptr<const LowView> view, glm::dvec2 sample,
                                                const Window& data)
-    : data_(data), fragments_(data.width(), data.height(), Fragment{}), scatters_(low.scatters()) {
-  if (low.disperses()) dispersion_ = Image<glm::vec4>(data.width(), data.height(), glm::vec4(0.0f));
-  upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
-    if (!layer.isThere()) return;
-    fragments_.at(x, y) = fragmentOf(layer);
-    if (low.disperses() && layer.refraction.z > 0.0f) dispersion_.at(x, y) = layer.dispersion / layer.refraction.z;
-  });
+    : data_(data),
+      scatters_(low.scatters()),
+      disperses_(low.disperses()),
+      source_(std::make_shared<const Source>(std::move(low), std::move(view), sample)) {}
+
+LowResolutionFragments::Added LowResolutionFragments::addedAt(glm::ivec2 place) const {
+  Added added;
+  const FlushDenormals flush;
+  const std::optional<UpsampledLayer> layer = source_->upsampler.at(place.x, place.y);
+  if (!layer || !layer->isThere()) return added;
+  added.isThere = true;
+  added.whole = fragmentOf(*layer);
+  if (disperses_ && layer->refraction.z > 0.0f) added.dispersion = layer->dispersion / layer->refraction.z;
+  return added;
 }
 
 template <class PlaceOf>
-std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const FragmentLists& lists,
-                                                                     const PlaceOf& placeOf) const {
-  std::vector<std::vector<Fragment>> all(lists.solid.size());
-  if (!runs_ || scatters_) return all;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 64), [&](const auto& pixels) {
+std::vector<LowResolutionFragments::Added> LowResolutionFragments::addedTo(const FragmentLists& lists,
+                                                                           const PlaceOf& placeOf, std::size_t begin,
+                                                                           std::size_t end) const {
+  std::vector<Added> all(end - begin);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 64), [&](const auto& pixels) {
     std::vector<float> depths;
     for (std::size_t pixel = pixels.begin(); pixel != pixels.end(); ++pixel) {
       const std::optional<glm::ivec2> at = placeOf(pixel);
-      if (!at || !isThere(fragments_.at(at->x, at->y))) continue;
+      if (!at) continue;
+      Added& added = all[pixel - begin];
+      added = addedAt(*at);
+      if (!added.isThere || !runs_ || scatters_) continue;
       depths.clear();
       for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
         if (takesPart(lists.fragments[i], lists.solid[pixel])) depths.push_back(lists.fragments[i].z);
@@ -316,38 +337,47 @@ std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const Fragm
       if (depths.empty()) continue;
       std::sort(depths.begin(), depths.end());
       depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
-      runs_->between(at->x, at->y, depths, kLowIdentity, all[pixel]);
+      runs_->between(at->x, at->y, depths, kLowIdentity, added.runs);
     }
   });
   return all;
 }
 
+void LowResolutionFragments::append(const Added& added, float solidZ, bool disperses, FragmentLists& lists) {
+  if (!added.runs.empty()) {
+    for (const Fragment& run : added.runs)
+      if (run.z <= solidZ) lists.fragments.push_back(run);
+    if (disperses) lists.dispersion.resize(lists.fragments.size(), glm::vec4(0.0f));
+  } else if (added.isThere && added.whole.z <= solidZ) {
+    lists.fragments.push_back(added.whole);
+    if (disperses) lists.dispersion.push_back(added.dispersion);
+  }
+}
+
 template <class PlaceOf>
 FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 15;  // pixels
   FragmentLists result;
   result.window = lists.window;
   result.solid = lists.solid;
+  result.offsets.reserve(lists.offsets.size());
   result.offsets.assign(1, 0);
-  const bool disperses = lists.disperses() || !dispersion_.empty();
-  const std::vector<std::vector<Fragment>> runs = runsAmong(lists, placeOf);
-  for (std::size_t pixel = 0; pixel < lists.solid.size(); ++pixel) {
-    const auto begin = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
-               end = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
-    result.fragments.insert(result.fragments.end(), lists.fragments.begin() + begin, lists.fragments.begin() + end);
-    if (lists.disperses())
-      result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + begin,
-                               lists.dispersion.begin() + end);
-    if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
-    const std::optional<glm::ivec2> at = placeOf(pixel);
-    if (!runs[pixel].empty()) {
-      for (const Fragment& run : runs[pixel])
-        if (run.z <= lists.solid[pixel].a) result.fragments.push_back(run);
+  result.fragments.reserve(lists.fragments.size());
+  const bool disperses = lists.disperses() || disperses_;
+  for (std::size_t first = 0; first < lists.solid.size(); first += kAtOnce) {
+    const std::size_t end = std::min(first + kAtOnce, lists.solid.size());
+    const std::vector<Added> added = addedTo(lists, placeOf, first, end);
+    for (std::size_t pixel = first; pixel < end; ++pixel) {
+      const auto own = static_cast<std::ptrdiff_t>(lists.offsets[pixel]),
+                 next = static_cast<std::ptrdiff_t>(lists.offsets[pixel + 1]);
+      result.fragments.insert(result.fragments.end(), lists.fragments.begin() + own, lists.fragments.begin() + next);
+      if (lists.disperses())
+        result.dispersion.insert(result.dispersion.end(), lists.dispersion.begin() + own,
+                                 lists.dispersion.begin() + next);
       if (disperses) result.dispersion.resize(result.fragments.size(), glm::vec4(0.0f));
-    } else if (at && isThere(fragments_.at(at->x, at->y)) && fragments_.at(at->x, at->y).z <= lists.solid[pixel].a) {
-      result.fragments.push_back(fragments_.at(at->x, at->y));
-      if (disperses) result.dispersion.push_back(dispersion_.empty() ? glm::vec4(0.0f) : dispersion_.at(at->x, at->y));
+      append(added[pixel - first], lists.solid[pixel].a, disperses, result);
+      result.offsets.push_back(result.fragments.size());
     }
-    result.offsets.push_back(result.fragments.size());
   }
   return result;
 }

@@ -105,8 +105,7 @@ void Renderer::over(const GBuffer& gbuffer, const Camera& camera) {
   gbuffer_ = &gbuffer;
   nearest_ = nearestOf(gbuffer);
   camera_ = camera;
-  opaqueZ_.reset();
-  opaqueZPart_ = {};
+  opaqueZIsOld_ = true;
 }
 
 void Renderer::classify() {
@@ -280,10 +279,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   if (!targets_ || targets_->width() != superTile.width() || targets_->height() != superTile.height())
     targets_.emplace(superTile.width(), superTile.height());
   targets_->setPart(drawnPart());
-  if (!(opaqueZ_ && opaqueZPart_ == superTile)) {
-    opaqueZ_ = uploadPlane(gbuffer_->viewZ, superTile);
-    opaqueZPart_ = superTile;
-  }
+  uploadDepth(superTile);
 
   const Window& data = gbuffer_->data;
   const Window part{data.x0 + superTile.x0, data.y0 + superTile.y0, data.x0 + superTile.x1, data.y0 + superTile.y1};
@@ -327,6 +323,17 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lightBuffer_.name());
   if (features_.occludes) uploadOccluders(superTile);
   checkGl("beginning the transparent pass");
+}
+
+void Renderer::uploadDepth(const Window& superTile) {
+  const bool fits =
+      opaqueZ_ && opaqueZPart_.width() == superTile.width() && opaqueZPart_.height() == superTile.height();
+  if (!fits)
+    opaqueZ_ = uploadPlane(gbuffer_->viewZ, superTile);
+  else if (opaqueZIsOld_ || opaqueZPart_ != superTile)
+    updatePlane(opaqueZ_, gbuffer_->viewZ, superTile);
+  opaqueZPart_ = superTile;
+  opaqueZIsOld_ = false;
 }
 
 void Renderer::uploadSurroundings() {
