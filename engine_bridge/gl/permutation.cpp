@@ -110,6 +110,7 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   if (winners || output == Output::cover || output == Output::add) {
     if (frame.grey) defines.emplace_back("GREY");
     defines.emplace_back("EXACT_COVERAGE");
+    if (frame.pieces) defines.emplace_back("PIECES");
     if (frame.solids) defines.emplace_back("SOLIDS");
     return defines;  // what scatters is summed apart
   }
@@ -118,6 +119,7 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   const bool lists = output == Output::list || output == Output::leanList;
   if (frame.probes && (output == Output::count || lists)) defines.emplace_back("PROBES");
   if (output != Output::list) return defines;
+  if (frame.pieces) defines.emplace_back("PIECES");
   if (frame.scatters()) defines.emplace_back("SCATTER");
   if (frame.disperses) defines.emplace_back("DISPERSION");
   return defines;

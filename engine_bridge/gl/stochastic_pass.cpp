@@ -256,7 +256,7 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
     const StochasticFrameBlock frame{
         {static_cast<std::uint32_t>(samples.samples), static_cast<std::uint32_t>(samples.first),
          static_cast<std::uint32_t>(samples.step), count},
-        {samples.seed, samples.stratified ? 1u : 0u, samples.winnersOnly ? 1u : 0u, 0u},
+        {samples.seed, samples.stratified ? 1u : 0u, samples.winnersOnly ? 1u : 0u, settings.pieces ? 1u : 0u},
         {data.x0 + part.x0, data.y0 + part.y0, 0, 0}};
     glNamedBufferData(self.frame.name(), sizeof frame, &frame, GL_DYNAMIC_DRAW);
     glBindBufferBase(GL_UNIFORM_BUFFER, 3, self.frame.name());
