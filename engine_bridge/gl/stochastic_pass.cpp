@@ -18,7 +18,7 @@ using namespace gl;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kDepthSteps = 65536.0f;          // shaders/gl/stochastic_cover.glsl
 constexpr std::size_t kSampleBytes = 64u << 20;  // of a band's samples; GL 4.5 promises storage blocks of 16 MiB
-constexpr GLuint kRankUnit = 13, kReachUnit = 14, kDepthsUnit = 15;
+constexpr GLuint kRankUnit = 16, kReachUnit = 14, kDepthsUnit = 15;
 
 // Mirrors shaders/gl/stochastic_frame.glsl.
 struct StochasticFrameBlock {

@@ -14,7 +14,7 @@ layout(std430, binding = 3) buffer SampleDepths { uint sampleDepths[]; };
 #ifdef WINNERS
 layout(std430, binding = 4) buffer SampleOwners { uint sampleOwners[]; };
 #endif
-layout(binding = 13) uniform usamplerBuffer maskRanks;
+layout(binding = 16) uniform usamplerBuffer maskRanks;  // 13 is the light of particles, of another type
 
 #ifdef GREY
 const int kSampleChannels = 1;

@@ -75,6 +75,25 @@ TEST_F(StochasticVerb, GlDrawsWhatTheCpuSamples) {
   }
 }
 
+// Their light is a texture beside the table of masks.
+TEST_F(StochasticVerb, GlDrawsParticlesUnderLamps) {
+  RunOptions generator = options;
+  generator.program = "pellucid_samples";
+  ASSERT_EQ(runProgram({".", "sparks", "90"}, generator).code, 0);
+  for (const char* noise : {"screen", "object"}) {
+    for (const char* where : {"cpu", "gl"}) {
+      const Ended ended =
+          runProgram({"composite", "sparks.exr", "sparks.glb", "-o", std::string(where) + ".exr", "--method",
+                      "stochastic", "--aa", "1", "--samples", "16", "--sampled-on", where, "--noise", noise},
+                     options);
+      ASSERT_EQ(ended.code, 0) << ended.err;
+    }
+    const double apart = meanError(readOpaque(folder + "/cpu.exr", {}).gbuffer.beauty,
+                                   readOpaque(folder + "/gl.exr", {}).gbuffer.beauty);
+    EXPECT_LT(apart, 1e-5) << noise;
+  }
+}
+
 TEST_F(StochasticVerb, NoiseOnTheObject) {
   const std::vector<std::string> how{"--method", "stochastic:alpha", "--aa", "4", "--seed", "7", "--noise", "object"};
   const auto with = [&](std::vector<std::string> more) {
