@@ -185,6 +185,7 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   const bool all = !settings.scatter.prune;
   features_.prune = settings.scatter.prune;
   features_.probes = settings.probeCell > 1;
+  features_.pieces = settings.pieces;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
   features_.shadowRays = features_.lights && settings.shadowRays != nullptr;
@@ -302,6 +303,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   frame_.viewport = glm::vec2(superTile.width(), superTile.height());
   frame_.worldFromView = glm::mat4(glm::mat3(glm::transpose(glm::dmat3(camera_.viewFromWorld))));
   frame_.footprint = settings.footprint;
+  frame_.toMiddle = glm::vec2(0.5 - settings.sample);
   frame_.probeCell = settings.probeCell;
   frame_.originX = superTile.x0;
   frame_.originY = superTile.y0;
@@ -364,6 +366,7 @@ void Renderer::uploadShadows() {
 void Renderer::traceShadows(const Window& superTile) {
   const FrameFeatures whole = features_;
   features_.lights = features_.shadowRays = features_.surroundings = features_.environment = false;
+  features_.pieces = false;  // surfaces ask for light by their triangle
   features_.solids = false;  // they are lit as well, and what they hide is not known yet
   features_.refracts = features_.diffuses = features_.disperses = features_.occludes = false;
   tracing_ = true;

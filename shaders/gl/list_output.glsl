@@ -3,7 +3,7 @@
 // after. Records are pairs of words: LeanFragment of gbuffer/lean_lists.h where LEAN, else Fragment of
 // gbuffer/fragments.h.
 #include "gl/frame.glsl"
-#include "gl/identity.glsl"
+#include "gl/piece.glsl"
 #include "shared/refraction.glsl"
 
 #ifdef LEAN
@@ -43,7 +43,7 @@ void appendFragment(Layer layer, Scatter scatter, vec4 dispersion, ivec2 pixel) 
   storePair(first + 3u, vec2(layer.transmission.b, layer.z));
 #ifndef LEAN
   storePair(first + 4u, scatter.offset);
-  storePair(first + 5u, uvec2(floatBitsToUint(scatter.variance), identityOf(instanceIdentity, triangleNumber)));
+  storePair(first + 5u, uvec2(floatBitsToUint(scatter.variance), identityHere()));
 #endif
 #ifdef DISPERSION
   dispersions[place] = dispersion;
