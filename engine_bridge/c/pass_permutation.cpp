@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "engine_bridge/c/stage_plan.h"
 #include "shaders/plane_defines.h"
 
 namespace pellucid::c {
@@ -78,6 +77,41 @@ const char* nameOf(LayerPart part) {
   }
 }
 
+std::string refusalOfMarks(const Permutation& p) {
+  const bool depths = p.has(PLD_FEATURE_DEPTHS);
+  if (p.published() && (depths || p.marked()))
+    return std::string("found ") +
+           (depths      ? "PLD_FEATURE_DEPTHS"
+            : p.moves() ? "PLD_FEATURE_MOTION"
+                        : "PLD_FEATURE_IDENTITY") +
+           " with PLD_TIER_PUBLISHED, which has the planes of its paper and no other";
+  if (depths && p.lowOver())
+    return "found PLD_FEATURE_DEPTHS with PLD_FEATURE_LOW_RESOLUTION and PLD_METHOD_FRONT_TAIL, which keep no depth of "
+           "what lies over the nearest layer";
+  if (p.marked() && !hasRoomForMarks(modelOf(p)))
+    return "found PLD_FEATURE_MOTION or PLD_FEATURE_IDENTITY with features whose planes take all eight targets: "
+           "expected PLD_TIER_EXACT, or one of PLD_FEATURE_OUTPUTS, PLD_FEATURE_DEPTHS, PLD_FEATURE_LIGHT, "
+           "PLD_FEATURE_COLOURED and PLD_FEATURE_DISPERSION less";
+  return {};
+}
+
+// Every stage takes what a surface tells, so that one material serves all of them; two keep it.
+void defineMarks(const Permutation& p, pld_stage stage, std::vector<std::string>& defines) {
+  const bool layers = stage == PLD_STAGE_LAYERS, solids = stage == PLD_STAGE_SOLIDS;
+  const auto define = [&](const char* name, bool wanted) {
+    if (wanted) defines.emplace_back(name);
+  };
+  define("PLD_MARKS", true);
+  if (p.exact() && (layers || solids)) defines.push_back(marksPlace(p));
+  define("MARKS_HERE", layers && !p.exact());
+  define("MOTION", layers && !p.exact() && p.moves());
+  define("NEAREST_HERE", layers && !p.exact() && p.named());
+  if (!p.exact() && (layers || solids))
+    defines.push_back(markOutputs(modelOf(p), layers ? PlaneStage::marks : PlaneStage::solidMarks));
+  else
+    define("MARK_OUTPUTS", true);
+}
+
 }  // namespace
 
 bool isPerspective(const float* p) {
@@ -126,28 +160,6 @@ std::string lostLight() {
   return "found PLD_FEATURE_LIGHT in PLD_TIER_PUBLISHED, which keeps no plane for light that adds: it is lost";
 }
 
-namespace {
-
-std::string refusalOfMarks(const Permutation& p) {
-  const bool depths = p.has(PLD_FEATURE_DEPTHS);
-  if (p.published() && (depths || p.marked()))
-    return std::string("found ") +
-           (depths      ? "PLD_FEATURE_DEPTHS"
-            : p.moves() ? "PLD_FEATURE_MOTION"
-                        : "PLD_FEATURE_IDENTITY") +
-           " with PLD_TIER_PUBLISHED, which has the planes of its paper and no other";
-  if (depths && p.lowOver())
-    return "found PLD_FEATURE_DEPTHS with PLD_FEATURE_LOW_RESOLUTION and PLD_METHOD_FRONT_TAIL, which keep no depth of "
-           "what lies over the nearest layer";
-  if (p.marked() && !hasRoomForMarks(modelOf(p)))
-    return "found PLD_FEATURE_MOTION or PLD_FEATURE_IDENTITY with features whose planes take all eight targets: "
-           "expected PLD_TIER_EXACT, or one of PLD_FEATURE_OUTPUTS, PLD_FEATURE_DEPTHS, PLD_FEATURE_LIGHT, "
-           "PLD_FEATURE_COLOURED and PLD_FEATURE_DISPERSION less";
-  return {};
-}
-
-}  // namespace
-
 std::string refusalOf(const Permutation& p, bool maybeLight) {
   if (p.published() && p.fronts())
     return "found PLD_TIER_PUBLISHED with PLD_METHOD_FRONT_TAIL, whose nearest layer it keeps no plane for: expected "
@@ -167,27 +179,6 @@ std::string refusalOf(const Permutation& p, bool maybeLight) {
 std::vector<PlaneSpec> planesOf(const Permutation& p) {
   return pellucid::planesOf(modelOf(p));
 }
-
-namespace {
-
-// Every stage takes what a surface tells, so that one material serves all of them; two keep it.
-void defineMarks(const Permutation& p, pld_stage stage, std::vector<std::string>& defines) {
-  const bool layers = stage == PLD_STAGE_LAYERS, solids = stage == PLD_STAGE_SOLIDS;
-  const auto define = [&](const char* name, bool wanted) {
-    if (wanted) defines.emplace_back(name);
-  };
-  define("PLD_MARKS", true);
-  if (p.exact() && (layers || solids)) defines.push_back(marksPlace(p));
-  define("MARKS_HERE", layers && !p.exact());
-  define("MOTION", layers && p.moves());
-  define("NEAREST_HERE", layers && !p.exact() && p.named());
-  if (!p.exact() && (layers || solids))
-    defines.push_back(markOutputs(modelOf(p), layers ? PlaneStage::marks : PlaneStage::solidMarks));
-  else
-    define("MARK_OUTPUTS", true);
-}
-
-}  // namespace
 
 std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   const bool low = stage == PLD_STAGE_LOW, layers = stage == PLD_STAGE_LAYERS;
@@ -236,6 +227,17 @@ std::vector<std::string> marksDefines(const Permutation& p) {
   if (p.reachesOpacity()) defines.emplace_back("DEPTHS");
   if (p.reachesOpacity() && p.has(PLD_FEATURE_SOLIDS)) defines.emplace_back("SOLIDS");
   return defines;
+}
+
+int listBlocks(const Permutation& p) {
+  if (!p.exact()) return 0;
+  const bool offsets = p.scatters() || p.rimsApart();
+  return (p.has(PLD_FEATURE_DISPERSION) ? 5 : offsets ? 4 : 3) + (p.marked() ? 1 : 0);
+}
+
+const char* listName(const Permutation& p, int block) {
+  constexpr const char* names[] = {"PldLinks", "PldRadiances", "PldTransmissions", "PldOffsets", "PldDispersions"};
+  return p.marked() && block == listBlocks(p) - 1 ? "PldMarks" : names[block];
 }
 
 // Behind the blocks that the pass has besides.

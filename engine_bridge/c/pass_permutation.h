@@ -84,6 +84,10 @@ std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage s
 std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip);
 //   showsThrough  false for what looks at a pixel's layers and not at the background behind them
 std::vector<std::string> resolveDefines(const Permutation& permutation, bool showsThrough = true);
+// How many storage blocks the lists of the exact tier take; 0 in other tiers.
+int listBlocks(const Permutation& permutation);
+// Of each of them, as shaders/gl/exact_lists.glsl and listed_marks.glsl have it.
+const char* listName(const Permutation& permutation, int block);
 // Of the exact tier: defines of shaders/gl/exact_fold.frag, of exact_marks.frag.
 std::vector<std::string> foldDefines(const Permutation& permutation, pld_stage stage);
 std::vector<std::string> marksDefines(const Permutation& permutation);

@@ -26,17 +26,6 @@ Permutation lowPermutation(const Permutation& permutation) {
   return low;
 }
 
-int listBlocks(const Permutation& p) {
-  if (!p.exact()) return 0;
-  const bool offsets = p.scatters() || p.rimsApart();
-  return (p.has(PLD_FEATURE_DISPERSION) ? 5 : offsets ? 4 : 3) + (p.marked() ? 1 : 0);
-}
-
-const char* listName(const Permutation& p, int block) {
-  constexpr const char* names[] = {"PldLinks", "PldRadiances", "PldTransmissions", "PldOffsets", "PldDispersions"};
-  return p.marked() && block == listBlocks(p) - 1 ? "PldMarks" : names[block];
-}
-
 ListSizes listSizes(int width, int height, uint64_t fragments) {
   const uint64_t heads = 1 + static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
   return {4 * heads, 4 * (heads + fragments), 16 * fragments};

@@ -166,7 +166,7 @@ std::vector<float> Host::finish(pld_pass* pass) {
   return picture();
 }
 
-Marks marksOf(std::uint32_t identity) {
+ToldMarks marksOf(std::uint32_t identity) {
   return {{static_cast<float>(identity % 97u) - 40.0f, 0.25f * static_cast<float>(identity % 13u)}, 7u * identity + 1u};
 }
 

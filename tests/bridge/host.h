@@ -53,11 +53,11 @@ class Host {
 };
 
 // What a replayed fragment tells of itself, by its Fragment::identity: motion in pixels, and identity.
-struct Marks {
+struct ToldMarks {
   float motion[2];
   std::uint32_t identity;
 };
-Marks marksOf(std::uint32_t identity);
+ToldMarks marksOf(std::uint32_t identity);
 
 // Blends the lists, fragment by fragment in their order, as a host's shader with the seam does. Stages and resolve
 // included.
