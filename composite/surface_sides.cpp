@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pellucid {
 namespace {
@@ -20,6 +21,13 @@ constexpr double kLimb = 6.1;
 // How much more a surface may bend at a step than a step before, seen from either end, whichever way it slopes: along
 // the diagonals of a ball it falls and rises again.
 constexpr double kOn = 2.0;
+// A step no higher than so many times those before and after it, in their direction, is the slope of one surface...
+constexpr double kAlike = 2.0;
+// ...unless what lies before does not bend by at least this part of what the step does: a plane ends there...
+constexpr double kBent = 0.25;
+// ...and where one of those is so many times as high as it, the surface ends there, and the other tells alone.
+constexpr double kEnds = 4.0;
+constexpr double kFarthest = 1e30;  // stands for nothing at all
 // Steps tell what touches an edge, planes tell steps: around a part each is needed somewhat farther.
 constexpr int kStepsAround = kTouchAround + 2;
 static_assert(kStepsAround + 4 <= kSidesAround);
@@ -45,13 +53,24 @@ Window SurfaceSides::around(int reach) const {
 
 bool SurfaceSides::Bends::steepens() const {
   const double one = std::abs(first), two = std::abs(second), three = std::abs(third);
-  return first * second >= 0.0 && second * third > 0.0 && one <= two && two <= three &&
+  return told && first * second >= 0.0 && second * third > 0.0 && one <= two && two <= three &&
          three <= two + kLimb * (two - one);
 }
 
 bool SurfaceSides::Bends::goesOn() const {
   const double bend = second - first, next = third - second;
-  return bend * next > 0.0 && std::abs(next) <= kOn * std::abs(bend);
+  return told && bend * next > 0.0 && std::abs(next) <= kOn * std::abs(bend);
+}
+
+bool SurfaceSides::Bends::isAlike() const {
+  const double before = std::abs(second), step = std::abs(third);
+  if (!(second * third > 0.0 && step <= kAlike * before && before <= kEnds * step)) return false;
+  const bool alone = std::abs(first) > kEnds * std::abs(second);
+  return alone || std::abs(second - first) >= kBent * std::abs(third - second);
+}
+
+bool SurfaceSides::Bends::begins() const {
+  return std::abs(second) > kEnds * std::max(std::abs(first), std::abs(third));
 }
 
 // Whether either pixel, both of which were hit, lies on the other's plane, or as deep.
@@ -75,23 +94,29 @@ bool SurfaceSides::apart(int x, int y, int u, int v) const {
   const int dx = u - x, dy = v - y;
   const std::optional<Bends> from = bendsOf(x, y, dx, dy), back = bendsOf(u, v, -dx, -dy);
   if ((from && from->steepens()) || (back && back->steepens())) return false;
+  if (from && back && (from->isAlike() || back->isAlike()) && (from->isAlike() || from->begins()) &&
+      (back->isAlike() || back->begins()))
+    return false;
   // Where the picture ends before two pixels, the other end tells alone.
-  const auto goesOn = [&](const std::optional<Bends>& bends, int fromX, int fromY, int stepX, int stepY) {
-    return bends ? bends->goesOn() : !inside(fromX - 2 * stepX, fromY - 2 * stepY);
-  };
-  return !((from || back) && goesOn(from, x, y, dx, dy) && goesOn(back, u, v, -dx, -dy));
+  const bool begun = !inside(x - 2 * dx, y - 2 * dy), ended = !inside(u + 2 * dx, v + 2 * dy);
+  return begun == ended ? begun || !from->goesOn() || !back->goesOn() : begun ? !back->goesOn() : !from->goesOn();
 }
 
-// Of the step from a pixel to a neighbour and the two before it. Nothing where something was not hit.
+// Of the step from a pixel to a neighbour, both of which were hit, and the two before it. Nothing where the picture
+// ends at the pixel.
 std::optional<SurfaceSides::Bends> SurfaceSides::bendsOf(int x, int y, int dx, int dy) const {
+  if (!inside(x - dx, y - dy)) return std::nullopt;
   double at[4];
+  bool told = true;
   for (int k = 0; k < 4; ++k) {
     const int u = x + (k - 2) * dx, v = y + (k - 2) * dy;
-    if (!inside(u, v) || !hit(u, v)) return std::nullopt;
-    const auto z = static_cast<double>(gbuffer_.viewZ.at(u, v));
-    at[k] = planes_.at(u, v).orthographic ? z : 1.0 / z;  // linear on planes, which never bend so
+    const bool met = inside(u, v) && hit(u, v), orthographic = planes_.at(x, y).orthographic;
+    const double z = met ? static_cast<double>(gbuffer_.viewZ.at(u, v)) : kFarthest;
+    at[k] = orthographic ? z : 1.0 / z;  // linear on planes, which never bend so
+    told = told && met;
   }
-  return Bends{at[1] - at[0], at[2] - at[1], at[3] - at[2]};
+  const double first = inside(x - 2 * dx, y - 2 * dy) ? at[1] - at[0] : std::numeric_limits<double>::infinity();
+  return Bends{first, at[2] - at[1], at[3] - at[2], told};
 }
 
 void SurfaceSides::markSteps() {

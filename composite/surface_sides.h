@@ -29,11 +29,16 @@ class SurfaceSides {
  private:
   // Three steps in a row.
   struct Bends {
-    double first, second, third;
+    double first, second, third;  // the first infinite where the picture ends
+    bool told;                    // something was hit at either end of each
     // More and more steeply, as towards a ball's limb.
     bool steepens() const;
     // Bent at the third as at the second, whichever way they slope.
     bool goesOn() const;
+    // The third goes on as the second.
+    bool isAlike() const;
+    // The second leads from another surface to that of the third.
+    bool begins() const;
   };
   bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
   bool apart(int x, int y, int u, int v) const;

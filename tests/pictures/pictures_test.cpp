@@ -46,6 +46,9 @@ TEST(Pictures, ThoseThatWereWrongAreRight) {
            Trial{"shapes", 902398},      // the same at the border of the picture
            Trial{"lamps", 911480},       // a round thing at the border of the picture was taken for two surfaces
            Trial{"shadows", 914744},     // past an edge the farther plane lay before what stands before it
+           Trial{"shapes", 916308},      // a round thing three pixels wide between two others was taken for several
+           Trial{"refracting", 916419},  // the same, between a crease and its limb
+           Trial{"refracting", 917875},  // the same, across a corner of the picture
        })
     expectRight(trial, runTrial(trial, folder, kept), folder);
 }

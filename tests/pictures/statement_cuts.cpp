@@ -62,25 +62,27 @@ void Statements::eachCut(const Column& column, const Face& face, double nearest,
     if (!foggy) return;
     for (const double end : {nearest - rounded, nearest + rounded}) take(picture_.shownBefore(cut, face, z, end));
   };
-  takeCut(column, nearest);
-  takeCut(column, farthest);
+  std::vector<Column> orders{column};
+  std::vector<double> depths{nearest, farthest};
   for (std::size_t i = 0; i < column.crossings.size(); ++i) {
     const reference::Crossing& crossing = column.crossings[i];
     const double off = rounding_ * crossing.steep, z = crossing.layer.z;
-    if (z + off > nearest && z - off < farthest)
-      for (const double cut : {z - 2.0 * off, z + 2.0 * off}) takeCut(column, cut);
+    if (z + off > nearest && z - off < farthest) depths.insert(depths.end(), {z - 2.0 * off, z + 2.0 * off});
     if (i == 0 || z - column.crossings[i - 1].layer.z > off + rounding_ * column.crossings[i - 1].steep) continue;
     Column other = column;  // which of the two is nearer floats do not tell
     std::swap(other.crossings[i - 1], other.crossings[i]);
     std::swap(other.crossings[i - 1].layer.z, other.crossings[i].layer.z);
-    takeCut(other, nearest);
-    takeCut(other, farthest);
+    orders.push_back(other);
   }
+  for (const Column& order : orders)
+    for (const double depth : depths) takeCut(order, depth);
 }
 
 void Statements::eachPartly(const Column& more, const Column& fewer,
                             const std::function<void(const Column&)>& take) const {
-  for (double part = 0.05; part < 0.97; part += 0.05) {  // stripes lie between
+  // However little of it bends all that is behind, and stripes lie between.
+  for (int step = 0; step <= 50; ++step) {
+    const double part = std::clamp(0.02 * step, 1e-4, 1.0 - 1e-4);
     Column partly = more;
     bool any = false;
     for (reference::Crossing& crossing : partly.crossings) {
