@@ -323,7 +323,10 @@ TEST(BridgeRecipe, TheGlPassIsOfOnePieceWithIt) {
   const std::pair<pld_tier, uint32_t> kinds[] = {{PLD_TIER_FLOAT, 511u & ~uint32_t{PLD_FEATURE_DIFFUSION}},
                                                  {PLD_TIER_HALF, PLD_FEATURE_COLOURED},
                                                  {PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION},
-                                                 {PLD_TIER_EXACT, PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS}};
+                                                 {PLD_TIER_EXACT, PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS},
+                                                 {PLD_TIER_HALF, PLD_FEATURE_SOLIDS | PLD_FEATURE_MOTION},
+                                                 {PLD_TIER_FLOAT, PLD_FEATURE_IDENTITY},
+                                                 {PLD_TIER_EXACT, PLD_FEATURE_SOLIDS | 7u * PLD_FEATURE_DEPTHS}};
   for (const auto& [tier, features] : kinds) {
     pld_create_info create = host.info();
     create.tier = tier;
