@@ -121,7 +121,7 @@ typedef PLD_ENUM(pld_feature){
                                  which a plane keeps the depth of the nearest layer. Not in the published tier */
     ,
     PLD_FEATURE_DEPTHS = 512,   /* PLD_VIEW_MEAN_DEPTH and, in PLD_TIER_EXACT without PLD_FEATURE_LOW_RESOLUTION,
-                                   PLD_VIEW_OPACITY_DEPTH, which only lists can tell. Takes the plane of
+                                   PLD_VIEW_OPACITY_DEPTH, which only lists can tell. Takes the planes of
                                    PLD_FEATURE_OUTPUTS, in the exact tier another of 64 bits and a sort of each list.
                                    Not in the published tier, nor with PLD_METHOD_FRONT_TAIL and
                                    PLD_FEATURE_LOW_RESOLUTION together */
