@@ -9,7 +9,8 @@ namespace pellucid::c {
 
 constexpr uint32_t kEveryFeature = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
                                    PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS |
-                                   PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS;
+                                   PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS |
+                                   PLD_FEATURE_DEPTHS | PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY;
 
 // Whether some choice is none that its enumeration has; `text` then says which.
 template <class Info, std::size_t size>
