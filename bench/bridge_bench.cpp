@@ -95,6 +95,10 @@ void main() {
   surface.eta = 1.0 / 1.5;
   surface.collimation = 0.9;
 #endif
+#ifdef PLD_MARKS
+  surface.motion = 4.0 * viewPosition.xy;
+  surface.identity = uint(gl_PrimitiveID);
+#endif
   pldWriteFragment(surface);
 }
 )";
@@ -252,7 +256,8 @@ void measure(benchmark::State& state, const Kind& kind) {
     stages.emplace_back(stage, scene.shader(seam, kind.lit));
   };
   if (kind.features & PLD_FEATURE_SOLIDS) add(PLD_STAGE_SOLIDS);
-  if (kind.method == PLD_METHOD_FRONT_TAIL && kind.tier != PLD_TIER_EXACT) add(PLD_STAGE_FRONT);
+  const bool nearest = kind.method == PLD_METHOD_FRONT_TAIL || (kind.features & PLD_FEATURE_IDENTITY);
+  if (nearest && kind.tier != PLD_TIER_EXACT) add(PLD_STAGE_FRONT);
   add(PLD_STAGE_LAYERS);
   const GLuint blend = scene.shader(nullptr, kind.lit);
   const pld_target target = scene.host().target();
@@ -320,6 +325,12 @@ const Kind kKinds[] = {
      kFixed, 0},
     {"lit, float, coloured, light, solids", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight | kSolids,
      kFixed, 0},
+    {"lit, float, full model, depths", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kColoured | kScatter | PLD_FEATURE_DEPTHS, kFixed, 0},
+    {"lit, float, full model, motion", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kColoured | kScatter | PLD_FEATURE_MOTION, kFixed, 0},
+    {"lit, float, full model, motion, identity", true, PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+     kColoured | kScatter | PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY, kFixed, 0},
     {"lit, float, coloured, light", true, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kColoured | kLight, kFixed, 1.3},
     {"unlit, float, grey", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, 0, kFixed, 3},
     {"unlit, float, grey, light", false, PLD_METHOD_WEIGHTED, PLD_TIER_FLOAT, kLight, kFixed, 3},

@@ -37,6 +37,11 @@ bool takesPart(const Fragment& fragment, const glm::vec4& solid) {
 }
 
 void copySolids(const FragmentLists& lists, OitPlanes& planes) {
+  if (planes.solid.empty()) {
+    const auto hides = [](const glm::vec4& solid) { return solid.a < kNowhere; };
+    if (std::none_of(lists.solid.data(), lists.solid.data() + lists.solid.size(), hides)) return;
+    planes.solid = Image<glm::vec4>(planes.data.width(), planes.data.height(), glm::vec4(0.0f, 0.0f, 0.0f, kNowhere));
+  }
   const int left = lists.window.x0 - planes.data.x0, top = lists.window.y0 - planes.data.y0;
   for (int y = 0; y < lists.window.height(); ++y)
     std::copy(lists.solid.row(y), lists.solid.row(y) + lists.window.width(), &planes.solid.at(left, top + y));

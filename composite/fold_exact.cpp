@@ -55,9 +55,10 @@ glm::vec4 summed(const std::vector<ScatteringTerms>& terms, std::size_t plane) {
 PLD_CLONES void foldScatteringRow(const FragmentLists& lists, int y, std::vector<ScatteringTerms>& terms,
                                   OitPlanes& planes) {
   const int left = lists.window.x0 - planes.data.x0, py = lists.window.y0 - planes.data.y0 + y;
-  Image<glm::vec4>* kept[kReadSums];
-  std::size_t places[kReadSums], count = 0;
-  for (std::size_t k = kFirstRead; k < kAddedSums; ++k) {
+  // Of light, which comes first, its alpha alone is kept.
+  Image<glm::vec4>* kept[kReadSums] = {nullptr};
+  std::size_t places[kReadSums] = {kFirstRead}, count = 1;
+  for (std::size_t k = kFirstScatterSum; k < kAddedSums; ++k) {
     if (planes.sums()[k]->empty()) continue;
     kept[count] = planes.sums()[k];
     places[count++] = k;
@@ -76,7 +77,8 @@ PLD_CLONES void foldScatteringRow(const FragmentLists& lists, int y, std::vector
       terms.push_back(read);
       diffuse = std::min(diffuse, one.diffuseZ);
     }
-    for (std::size_t k = 0; k < count; ++k)
+    planes.refractionZ.at(left + x, py) = terms.empty() ? 0.0f : summed(terms, 0).a;
+    for (std::size_t k = 1; k < count; ++k)
       kept[k]->at(left + x, py) = terms.empty() ? glm::vec4(0.0f) : summed(terms, k);
     planes.diffuseZ.at(left + x, py) = diffuse;
   }

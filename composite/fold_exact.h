@@ -13,7 +13,7 @@ void foldExact(const FragmentLists& lists, const shading::WeightSettings& weight
 
 // Only what foldScattering() says, with the bits of foldExact(). Whatever the planes hold in the lists' window is
 // replaced, so that planes may be used again; false where nothing there refracts or diffuses.
-//   planes  have those of scattering
+//   planes  as emptyScatterPlanes() makes them
 bool foldExactScattering(const FragmentLists& lists, OitPlanes& planes);
 
 }  // namespace pellucid

@@ -166,7 +166,7 @@ struct Lookups::Text : shading::LookupText {
   // Of a pixel of the planes.
   Way wayOf(int x, int y) const {
     const glm::vec4& refraction = planes->refraction.at(x, y);
-    return {shading::pathOf(refraction, planes->light.at(x, y).a, planes->diffuseZ.at(x, y)),
+    return {shading::pathOf(refraction, planes->refractionZAt(x, y), planes->diffuseZ.at(x, y)),
             planes->disperses() ? shading::dispersionOf(planes->dispersion.at(x, y), refraction.z) : glm::vec4(0.0f)};
   }
 };

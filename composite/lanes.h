@@ -8,7 +8,7 @@
 // calls is compiled into it. Sanitizers instrument what takes the choice, which runs before they are ready.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
-#define PLD_CLONES __attribute__((target_clones("avx2", "default"), flatten))
+#define PLD_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default"), flatten))
 #else
 #define PLD_CLONES
 #endif

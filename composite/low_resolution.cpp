@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "composite/denormals.h"
 #include "composite/fold.h"
@@ -137,11 +138,17 @@ class Upsampler {
 
 LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor,
                   const DepthPlanes* planes) {
+  Image<float> opaqueZ = gbuffer.viewZ;
+  for (std::size_t i = 0; i < solid.size(); ++i) opaqueZ[i] = std::min(opaqueZ[i], solid[i].a);
+  return lowViewOf(gbuffer, std::move(opaqueZ), camera, factor, planes);
+}
+
+LowView lowViewOf(const GBuffer& gbuffer, Image<float> opaqueZ, const Camera& camera, int factor,
+                  const DepthPlanes* planes) {
   LowView view;
   view.factor = factor;
   view.planes = planes;
-  view.opaqueZ = gbuffer.viewZ;
-  for (std::size_t i = 0; i < solid.size(); ++i) view.opaqueZ[i] = std::min(view.opaqueZ[i], solid[i].a);
+  view.opaqueZ = std::move(opaqueZ);
   const int width = (gbuffer.data.width() + factor - 1) / factor,
             height = (gbuffer.data.height() + factor - 1) / factor;
   view.gbuffer.display = view.gbuffer.data = {0, 0, width, height};
@@ -290,34 +297,48 @@ Fragment fragmentOf(const UpsampledLayer& layer) {
   return fragment;
 }
 
-bool isThere(const Fragment& fragment) {
-  return fragment.identity == kLowIdentity;
-}
-
 }  // namespace
 
-LowResolutionFragments::LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample,
+struct LowResolutionFragments::Source {
+  OitPlanes low;
+  std::shared_ptr<const LowView> view;
+  Upsampler upsampler;
+  Source(OitPlanes planes, std::shared_ptr<const LowView> seen, glm::dvec2 sample)
+      : low(std::move(planes)), view(std::move(seen)), upsampler(low, *view, sample) {}
+};
+
+LowResolutionFragments::LowResolutionFragments(OitPlanes low, std::shared_ptr<const LowView> view, glm::dvec2 sample,
                                                const Window& data)
-    : data_(data), scatters_(low.scatters()) {
-  layers_.resize(static_cast<std::size_t>(data.width()) * static_cast<std::size_t>(data.height()), modelOf(low));
-  upsample(low, view, sample, [&](int x, int y, const UpsampledLayer& layer) {
-    if (!layer.isThere()) return;
-    const std::size_t place = indexOf({x, y});
-    layers_.fragments[place] = fragmentOf(layer);
-    setColumns(layers_, place, layer.scatter);
-  });
+    : data_(data),
+      scatters_(low.scatters()),
+      layers_(modelOf(low)),
+      source_(std::make_shared<const Source>(std::move(low), std::move(view), sample)) {}
+
+LowResolutionFragments::Added LowResolutionFragments::addedAt(glm::ivec2 place) const {
+  Added added;
+  const FlushDenormals flush;
+  const std::optional<UpsampledLayer> layer = source_->upsampler.at(place.x, place.y);
+  if (!layer || !layer->isThere()) return added;
+  added.isThere = true;
+  added.whole.resize(1, layers_);
+  added.whole.fragments.front() = fragmentOf(*layer);
+  setColumns(added.whole, 0, layer->scatter);
+  return added;
 }
 
 template <class PlaceOf>
-std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const FragmentLists& lists,
-                                                                     const PlaceOf& placeOf) const {
-  std::vector<std::vector<Fragment>> all(lists.solid.size());
-  if (!runs_ || scatters_) return all;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 64), [&](const auto& pixels) {
+std::vector<LowResolutionFragments::Added> LowResolutionFragments::addedTo(const FragmentLists& lists,
+                                                                           const PlaceOf& placeOf, std::size_t begin,
+                                                                           std::size_t end) const {
+  std::vector<Added> all(end - begin);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 64), [&](const auto& pixels) {
     std::vector<float> depths;
     for (std::size_t pixel = pixels.begin(); pixel != pixels.end(); ++pixel) {
       const std::optional<glm::ivec2> at = placeOf(pixel);
-      if (!at || !isThere(layers_.fragments[indexOf(*at)])) continue;
+      if (!at) continue;
+      Added& added = all[pixel - begin];
+      added = addedAt(*at);
+      if (!added.isThere || !runs_ || scatters_) continue;
       depths.clear();
       for (std::uint64_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
         if (takesPart(lists.fragments[i], lists.solid[pixel])) depths.push_back(lists.fragments[i].z);
@@ -325,28 +346,32 @@ std::vector<std::vector<Fragment>> LowResolutionFragments::runsAmong(const Fragm
       if (depths.empty()) continue;
       std::sort(depths.begin(), depths.end());
       depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
-      runs_->between(at->x, at->y, depths, kLowIdentity, all[pixel]);
+      runs_->between(at->x, at->y, depths, kLowIdentity, added.runs);
     }
   });
   return all;
 }
 
+void LowResolutionFragments::append(const Added& added, float solidZ, FragmentLists& lists) {
+  for (const Fragment& run : added.runs)
+    if (run.z <= solidZ) lists.append(run);
+  if (added.runs.empty() && added.isThere && added.whole.fragments.front().z <= solidZ) lists.append(added.whole, 0, 1);
+}
+
 template <class PlaceOf>
 FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 15;  // pixels
   FragmentLists result = emptyLike(lists);
-  const std::vector<std::vector<Fragment>> runs = runsAmong(lists, placeOf);
-  for (std::size_t pixel = 0; pixel < lists.solid.size(); ++pixel) {
-    result.append(lists, lists.offsets[pixel], lists.offsets[pixel + 1]);
-    const std::optional<glm::ivec2> at = placeOf(pixel);
-    if (!runs[pixel].empty()) {
-      for (const Fragment& run : runs[pixel])
-        if (run.z <= lists.solid[pixel].a) result.append(run);
-    } else if (at) {
-      const std::size_t place = indexOf(*at);
-      const Fragment& layer = layers_.fragments[place];
-      if (isThere(layer) && layer.z <= lists.solid[pixel].a) result.append(layers_, place, place + 1);
+  result.offsets.reserve(lists.offsets.size());
+  result.fragments.reserve(lists.fragments.size());
+  for (std::size_t first = 0; first < lists.solid.size(); first += kAtOnce) {
+    const std::size_t end = std::min(first + kAtOnce, lists.solid.size());
+    const std::vector<Added> added = addedTo(lists, placeOf, first, end);
+    for (std::size_t pixel = first; pixel < end; ++pixel) {
+      result.append(lists, lists.offsets[pixel], lists.offsets[pixel + 1]);
+      append(added[pixel - first], lists.solid[pixel].a, result);
+      result.endPixel();
     }
-    result.endPixel();
   }
   result.addColumnsOf(layers_);
   return result;

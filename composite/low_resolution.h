@@ -35,6 +35,9 @@ struct LowView {
 //   planes  LowView::planes
 LowView lowViewOf(const GBuffer& gbuffer, const Image<glm::vec4>& solid, const Camera& camera, int factor,
                   const DepthPlanes* planes = nullptr);
+//   opaqueZ  LowView::opaqueZ
+LowView lowViewOf(const GBuffer& gbuffer, Image<float> opaqueZ, const Camera& camera, int factor,
+                  const DepthPlanes* planes);
 
 // What texels become in one pixel: a single layer.
 struct UpsampledLayer {
@@ -72,10 +75,12 @@ OitPlanes planesOfVeil(const Veil& veil, const Image<float>& meanZ, const LowVie
 
 class LowRuns;
 
-// The upsampled layers of a whole picture as fragments, for lists. Empty where there is none.
+// The upsampled layers of a picture as fragments, for lists; each pixel's are made when its list asks.
 class LowResolutionFragments {
  public:
-  LowResolutionFragments(const OitPlanes& low, const LowView& view, glm::dvec2 sample, const Window& data);
+  //   low     accumulated over view->gbuffer and view->camera
+  //   sample  where in pixels and texels both were sampled
+  LowResolutionFragments(OitPlanes low, std::shared_ptr<const LowView> view, glm::dvec2 sample, const Window& data);
   // From now on a pixel has them in runs, between its layers, instead of as one. Not where they scatter, which is told
   // of all together.
   void cutByLayers(std::shared_ptr<const LowRuns> runs) { runs_ = std::move(runs); }
@@ -86,19 +91,26 @@ class LowResolutionFragments {
   bool scatters() const { return scatters_; }
 
  private:
+  // What a pixel gets: all its layers as one, or in runs.
+  struct Added {
+    bool isThere = false;
+    FragmentLists whole;         // one fragment with its columns
+    std::vector<Fragment> runs;  // in its place, unless empty
+  };
+  struct Source;
   template <class PlaceOf>
   FragmentLists amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const;
-  // By pixel of the lists; nothing where they are one layer.
+  Added addedAt(glm::ivec2 place) const;
+  static void append(const Added& added, float solidZ, FragmentLists& lists);
+  // Of some pixels of the lists.
   template <class PlaceOf>
-  std::vector<std::vector<Fragment>> runsAmong(const FragmentLists& lists, const PlaceOf& placeOf) const;
-
-  std::size_t indexOf(glm::ivec2 at) const {
-    return static_cast<std::size_t>(at.y) * static_cast<std::size_t>(data_.width()) + static_cast<std::size_t>(at.x);
-  }
+  std::vector<Added> addedTo(const FragmentLists& lists, const PlaceOf& placeOf, std::size_t begin,
+                             std::size_t end) const;
 
   Window data_;
-  FragmentLists layers_;  // one in every pixel: coverage 0 and no radiance where there is none
   bool scatters_ = false;
+  LayerModel layers_;  // theirs, as far as lists have columns for them
+  std::shared_ptr<const Source> source_;
   std::shared_ptr<const LowRuns> runs_;
 };
 

@@ -51,13 +51,13 @@ struct LowRuns::Run {
   double shown = 0.0, depth = 0.0;
 };
 
-LowRuns::LowRuns(const LowView& view, glm::dvec2 sample, const LowBetween& others)
-    : view_(view),
+LowRuns::LowRuns(std::shared_ptr<const LowView> view, glm::dvec2 sample, const LowBetween& others)
+    : view_(std::move(view)),
       sample_(sample),
       others_(others),
-      layers_(view.gbuffer.viewZ.width(), view.gbuffer.viewZ.height()),
+      layers_(view_->gbuffer.viewZ.width(), view_->gbuffer.viewZ.height()),
       texels_(layers_.width(), layers_.height()),
-      shares_(view_, sample) {}
+      shares_(*view_, sample) {}
 
 void LowRuns::add(const FragmentLists& lists) {
   std::size_t pixel = 0;
@@ -81,7 +81,7 @@ void LowRuns::finish() {
       for (const TexelLayer& layer : layers_.at(i, j)) all.add(layer.light, layer.transmission, layer.z);
       texels_.at(i, j) = all.texel();
     }
-  surface_ = std::make_unique<LowSurface>(view_, texels_, sample_);
+  surface_ = std::make_unique<LowSurface>(*view_, texels_, sample_);
 }
 
 void LowRuns::addTexel(const LowSurface::Pixel& pixel, int i, int j, double share, std::span<const float> depths,

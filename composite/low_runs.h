@@ -19,7 +19,7 @@ struct LowBetween {
 
 class LowRuns {
  public:
-  LowRuns(const LowView& view, glm::dvec2 sample, const LowBetween& others = {});
+  LowRuns(std::shared_ptr<const LowView> view, glm::dvec2 sample, const LowBetween& others = {});
   // Lists of texels from near to far, each texel once.
   void add(const FragmentLists& texels);
   // After all of them, before between().
@@ -44,7 +44,7 @@ class LowRuns {
   void addTexel(const LowSurface::Pixel& pixel, int i, int j, double share, std::span<const float> depths,
                 std::vector<Run>& runs) const;
 
-  LowView view_;
+  std::shared_ptr<const LowView> view_;
   glm::dvec2 sample_;
   LowBetween others_;
   Image<std::vector<TexelLayer>> layers_;

@@ -103,22 +103,22 @@ void hideSolids(FragmentLists& lists, const OitPlanes& planes) {
   lists.fragments.resize(kept);
 }
 
-void showThroughAt(const Lookups& lookups, int x, int y, Veil& veil) {
+void showThroughAt(const Lookups& lookups, int x, int y, Veil& veil, int top) {
   const glm::vec3 transmission = veil.transmission.at(x, y);
-  const glm::vec4 background = lookups.at(x, y);
+  const glm::vec4 background = lookups.at(x, top + y);
   veil.direct.at(x, y) = glm::vec3(0.0f);
   veil.applied.at(x, y) = glm::vec4(transmission * shading::throughOnly(transmission, glm::vec3(background)),
                                     shading::meanOf(transmission) * (1.0f - background.a));
 }
 
-void showThrough(const Lookups& lookups, Veil& veil) {
+void showThrough(const Lookups& lookups, Veil& veil, int top) {
   veil.addScatter();
   tbb::parallel_for(tbb::blocked_range<int>(0, veil.touched.height()), [&](const tbb::blocked_range<int>& rows) {
     const FlushDenormals flush;
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < veil.touched.width(); ++x) {
-        if (!veil.touched.at(x, y) || !lookups.scattersAt(x, y)) continue;
-        showThroughAt(lookups, x, y, veil);
+        if (!veil.touched.at(x, y) || !lookups.scattersAt(x, top + y)) continue;
+        showThroughAt(lookups, x, y, veil, top);
       }
   });
 }

@@ -32,9 +32,10 @@ void hideSolids(FragmentLists& lists, const OitPlanes& planes);
 bool hidesSolids(const FragmentLists& lists, const OitPlanes& planes);
 
 // Applies the background to the pixels of the veil that refract or diffuse; the others are left alone.
-void showThrough(const Lookups& lookups, Veil& veil);
+//   top  row of the lookups' planes that is the veil's first
+void showThrough(const Lookups& lookups, Veil& veil, int top = 0);
 // The same for one that does.
-void showThroughAt(const Lookups& lookups, int x, int y, Veil& veil);
+void showThroughAt(const Lookups& lookups, int x, int y, Veil& veil, int top = 0);
 
 // The steps above in their order, of planes of all of the background's window or of a part of it.
 //   edges  of the background; null: none are known

@@ -73,6 +73,17 @@ bool SurfaceSides::Bends::begins() const {
   return std::abs(second) > kEnds * std::max(std::abs(first), std::abs(third));
 }
 
+// Of a step seen from either end.
+bool SurfaceSides::areOne(const Bends& from, const Bends& back) {
+  const bool alike = from.isAlike(), backAlike = back.isAlike();
+  if ((alike || backAlike) && (alike || from.begins()) && (backAlike || back.begins())) return true;
+  // Four pixels between two other surfaces, which bend to one side throughout, as over the top of a ball.
+  const double highest = std::max({std::abs(from.second), std::abs(from.third), std::abs(back.second)});
+  if (!(std::min(std::abs(from.first), std::abs(back.first)) > kEnds * highest)) return false;
+  const double bend = from.third - from.second, next = back.third - back.second;  // backwards steps are negative
+  return bend * next > 0.0 && std::abs(next) <= kEnds * std::abs(bend) && std::abs(bend) <= kEnds * std::abs(next);
+}
+
 // Whether either pixel, both of which were hit, lies on the other's plane, or as deep.
 bool SurfaceSides::onPlanes(int x, int y, int u, int v) const {
   const auto z = static_cast<double>(gbuffer_.viewZ.at(x, y)), other = static_cast<double>(gbuffer_.viewZ.at(u, v));
@@ -94,12 +105,22 @@ bool SurfaceSides::apart(int x, int y, int u, int v) const {
   const int dx = u - x, dy = v - y;
   const std::optional<Bends> from = bendsOf(x, y, dx, dy), back = bendsOf(u, v, -dx, -dy);
   if ((from && from->steepens()) || (back && back->steepens())) return false;
-  if (from && back && (from->isAlike() || back->isAlike()) && (from->isAlike() || from->begins()) &&
-      (back->isAlike() || back->begins()))
-    return false;
+  if (from && back && areOne(*from, *back)) return false;
   // Where the picture ends before two pixels, the other end tells alone.
   const bool begun = !inside(x - 2 * dx, y - 2 * dy), ended = !inside(u + 2 * dx, v + 2 * dy);
-  return begun == ended ? begun || !from->goesOn() || !back->goesOn() : begun ? !back->goesOn() : !from->goesOn();
+  if (begun && ended) return true;
+  if (!begun && !ended) return !from->goesOn() || !back->goesOn();
+  const Bends& end = begun ? *back : *from;
+  if (const std::optional<Bends>& border = begun ? from : back) return !goesOnToBorder(end, *border);
+  const auto z = static_cast<double>(gbuffer_.viewZ.at(x, y)), other = static_cast<double>(gbuffer_.viewZ.at(u, v));
+  return !end.goesOn() || std::abs(z - other) > kMissed * std::min(z, other);
+}
+
+// Of a step of which one end tells; of the other there is one pixel more.
+bool SurfaceSides::goesOnToBorder(const Bends& end, const Bends& border) {
+  if (!end.goesOn()) return false;
+  const double bend = end.third - end.second, next = border.third - border.second;
+  return bend * next > 0.0 && std::abs(next) <= kOn * std::abs(bend);
 }
 
 // Of the step from a pixel to a neighbour, both of which were hit, and the two before it. Nothing where the picture

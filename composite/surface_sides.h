@@ -40,6 +40,8 @@ class SurfaceSides {
     // The second leads from another surface to that of the third.
     bool begins() const;
   };
+  static bool areOne(const Bends& from, const Bends& back);
+  static bool goesOnToBorder(const Bends& end, const Bends& border);
   bool hit(int x, int y) const { return std::isfinite(gbuffer_.viewZ.at(x, y)); }
   bool apart(int x, int y, int u, int v) const;
   bool onPlanes(int x, int y, int u, int v) const;

@@ -28,6 +28,9 @@ struct Veil {
   void addScatter();  // direct = transmission, applied = 0, unless they are there
 };
 
+// Rows y0 to y1 of a veil, y1 not among them.
+Veil rowsOf(const Veil& veil, int y0, int y1);
+
 // The same in a veil of all of the data window's size.
 Veil widened(Veil veil, const Window& data);
 
@@ -35,6 +38,9 @@ Veil widened(Veil veil, const Window& data);
 class VeilMean {
  public:
   void add(Veil sample);
+  // The same piece by piece: rows of one more sample follow, as rowsOf() cuts them, each once and from the top.
+  void begin(const Veil& sample);
+  void addRows(const Veil& rows);
   Veil finish();  // at least one sample must have been added, and none is kept
 
  private:

@@ -55,8 +55,7 @@ OitPlanes emptyScatterPlanes(const Window& display, const Window& data) {
   OitPlanes planes;
   planes.display = display;
   planes.data = data;
-  planes.light = Image<glm::vec4>(data.width(), data.height(), glm::vec4(0.0f));
-  planes.solid = Image<glm::vec4>(data.width(), data.height(), glm::vec4(0.0f, 0.0f, 0.0f, kNothing));
+  planes.refractionZ = Image<float>(data.width(), data.height(), 0.0f);
   addScatterPlanes(planes);
   return planes;
 }

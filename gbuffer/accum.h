@@ -40,6 +40,8 @@ struct OitPlanes {
   // Empty when no layer of the scene refracts or diffuses.
   Image<glm::vec4> refraction;  // sums of W delta.x, W delta.y, W (float pixels, y down) and of s^2 (pixels^2): D^2
   Image<float> diffuseZ;        // nearest diffusing layer, planar metres, +inf for none
+  // The alpha of `light`, in emptyScatterPlanes(), which have no `light`.
+  Image<float> refractionZ;
   // Empty when no refracting layer disperses. Sums of W times delta of red, then of blue, minus delta; float pixels.
   Image<glm::vec4> dispersion;
 
@@ -53,6 +55,7 @@ struct OitPlanes {
   std::array<const Image<glm::vec4>*, kAddedSums> sums() const {
     return {&radiance, &weight, &opacity, &depth, &light, &refraction, &dispersion};
   }
+  float refractionZAt(int x, int y) const { return light.empty() ? refractionZ.at(x, y) : light.at(x, y).a; }
 
   shading::OitTargets at(int x, int y) const {
     shading::OitTargets targets;
@@ -69,7 +72,8 @@ struct OitPlanes {
 OitPlanes emptyPlanes(const Window& display, const Window& data);
 // The same of tier "published": beta is 1.
 OitPlanes emptyPublishedPlanes(const Window& display, const Window& data);
-// Those alone that say where a pixel's layers show the background from: light, refraction, diffuseZ and solid.
+// Those alone that say where a pixel's layers show the background from: refractionZ, refraction and diffuseZ. `solid`
+// is empty as long as there is none.
 OitPlanes emptyScatterPlanes(const Window& display, const Window& data);
 // Gives planes that lack them those of refraction and diffusion, in which nothing scatters.
 void addScatterPlanes(OitPlanes& planes);

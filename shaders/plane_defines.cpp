@@ -120,10 +120,14 @@ void defineLayers(const LayerModel& model, const Planes& planes, bool showsThrou
     defines.push_back("DIFFUSE_Z(P) " + placeText(diffuseZPlace(model), planes));
 }
 
-void defineOutputs(const Planes& planes, Defines& defines) {
-  defines.push_back(listOf("PLANE_OUTPUTS", planes, [](const PlaneSpec& plane) {
+std::string outputsOf(const char* name, const Planes& planes) {
+  return listOf(name, planes, [](const PlaneSpec& plane) {
     return "layout(location = " + std::to_string(plane.target) + ") out " + typeOf(plane) + " " + plane.name + ";";
-  }));
+  });
+}
+
+void defineOutputs(const Planes& planes, Defines& defines) {
+  defines.push_back(outputsOf("PLANE_OUTPUTS", planes));
   defines.push_back(listOf("ADDED_PLANES(F)", planes, [](const PlaneSpec& plane) {
     return adds(plane) ? "F(" + typeOf(plane) + ", " + plane.name + ")" : std::string();
   }));
@@ -189,8 +193,13 @@ std::vector<std::string> upsampleDefines(const LayerModel& model, const LayerMod
   return defines;
 }
 
+std::string markOutputs(const LayerModel& model, PlaneStage stage) {
+  return outputsOf("MARK_OUTPUTS", planesOf(model, stage));
+}
+
 std::vector<std::string> emptyDefines(const LayerModel& model) {
-  const Planes planes = planesOf(model);
+  Planes planes = planesOf(model);
+  for (const PlaneSpec& plane : planesOf(model, PlaneStage::marks)) planes.push_back(plane);
   Defines defines;
   defineOutputs(planes, defines);
   defines.push_back(listOf("EMPTY_PLANES(F)", planes, [](const PlaneSpec& plane) {

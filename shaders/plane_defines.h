@@ -8,6 +8,7 @@
 //   ADDED_PLANES(F)    F(type, plane): all that add; ADDED_PLANE_COUNT of them
 //   HALF_PLANES(F)     F(place, type): what is added in half floats
 //   EMPTY_PLANES(F)    F(type, plane, value)
+//   MARK_OUTPUTS       as PLANE_OUTPUTS, of PlaneStage::marks or solidMarks; may be empty
 //   NEAREST_Z          place of the nearest depth, where it is kept
 //   REFRACTION_Z(P), DIFFUSE_Z(P)  depths of what scatters: P(plane).component
 //
@@ -30,6 +31,8 @@ std::vector<std::string> weightDefines(const LayerModel& model);
 std::vector<std::string> readDefines(const LayerModel& model, bool showsThrough = true);
 // Of gl/upsample.frag: the sums of `low` as texels, entered into the planes of `model`.
 std::vector<std::string> upsampleDefines(const LayerModel& model, const LayerModel& low);
+// MARK_OUTPUTS.
+std::string markOutputs(const LayerModel& model, PlaneStage stage);
 // Of gl/empty_planes.frag.
 std::vector<std::string> emptyDefines(const LayerModel& model);
 // RIM_SAMPLERS, which gl/rims_apply.frag and view_rims.frag take besides what readers do.

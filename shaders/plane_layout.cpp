@@ -1,5 +1,6 @@
 #include "shaders/plane_layout.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace pellucid {
@@ -146,7 +147,33 @@ std::vector<PlaneSpec> overPlanes(const LayerModel& model) {
           added(PlaneSum::frontDepth, "overDepth", 7, depth, kOverUnit + 1)};
 }
 
+// The last target that the layers leave free; below 0: none.
+int marksTarget(const LayerModel& model) {
+  if (model.tier == PlaneTier::exact) return 0;  // in a pass of its own
+  const std::vector<PlaneSpec> planes = layerPlanes(model);
+  const auto isTaken = [&](int target) {
+    return std::any_of(planes.begin(), planes.end(), [&](const PlaneSpec& plane) { return plane.target == target; });
+  };
+  int target = kMostTargets - 1;
+  while (target >= 0 && isTaken(target)) --target;
+  return target;
+}
+
+// Never rounded: identities are whole numbers up to 2^24.
+std::vector<PlaneSpec> marksPlanes(const LayerModel& model) {
+  if (!model.marked()) return {};
+  const bool alone = !model.moves && model.tier != PlaneTier::exact;
+  const PlaneBlend blend = alone ? PlaneBlend::minimum : model.named ? PlaneBlend::alphaMinimum : PlaneBlend::add;
+  const PlaneFormat format = alone ? PlaneFormat::r32f : PlaneFormat::rgba32f;
+  return {{PlaneSum::marks, "layerMarks", marksTarget(model), format, blend, kMarksUnit,
+           clearOf(blend, componentsOf(format)), kNoPixels}};
+}
+
 }  // namespace
+
+bool hasRoomForMarks(const LayerModel& model) {
+  return marksTarget(model) >= 0;
+}
 
 bool isOfScattering(PlaneSum sum) {
   const auto place = static_cast<std::size_t>(sum);
@@ -218,6 +245,13 @@ std::vector<PlaneSpec> planesOf(const LayerModel& model, PlaneStage stage) {
               added(PlaneSum::rimGradient, "rimGradient", 2, PlaneFormat::rg32f, kRimUnit + 2)};
     case PlaneStage::over:
       return overPlanes(model);
+    case PlaneStage::marks:
+      return marksPlanes(model);
+    case PlaneStage::solidMarks:
+      return {added(PlaneSum::solidMarks, "solidMarks", model.tier == PlaneTier::exact ? 0 : 1, PlaneFormat::rgba32f,
+                    kSolidMarksUnit)};
+    case PlaneStage::listedDepths:
+      return {added(PlaneSum::listedDepths, "layerDepths", 1, PlaneFormat::rg32f, kMarksUnit)};
     default:
       return layerPlanes(model);
   }

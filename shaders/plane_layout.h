@@ -25,6 +25,7 @@ struct LayerModel {
   bool solids = false;         // some fragment may hide everything
   bool rims = false;           // light of cut-out rims is summed apart, and darkened later
   bool lowResolution = false;  // layers drawn at a part of the resolution enter the sums
+  bool moves = false, named = false;  // motion, and the nearest layer's identity, have a plane
 
   bool scatters() const { return refracts || diffuses; }
   bool published() const { return tier == PlaneTier::published; }
@@ -35,6 +36,7 @@ struct LayerModel {
   bool diffuseInAlpha() const { return diffuses && !published() && !nearestDepths; }
   // Layers of low resolution that lie before the nearest layer have planes of their own.
   bool over() const { return lowResolution && front; }
+  bool marked() const { return moves || named; }
 };
 
 // The layers of such a pass that are drawn at low resolution: nothing among them is solid or waits for its occlusion,
@@ -69,10 +71,13 @@ enum class PlaneSum {
   frontDepth,  // of the nearest layer: light and layers; tau
   rimAveraged,
   rimAdded,
-  rimGradient,        // gbuffer/rim_planes.h
-  frontZ,             // what front+tail draws first: depth of the nearest layer
-  sortedLight,        // light of all layers over what is solid; layers
-  sortedTransmission  // what they let through; depth of the nearest
+  rimGradient,         // gbuffer/rim_planes.h
+  frontZ,              // what front+tail draws first: depth of the nearest layer
+  sortedLight,         // light of all layers over what is solid; layers
+  sortedTransmission,  // what they let through; depth of the nearest
+  marks,               // sums of share times motion, of shares; identity of the nearest, which may be alone
+  solidMarks,          // of the nearest solid: motion, 1, identity
+  listedDepths         // exact tier: where opacity is reached; mean depth
 };
 constexpr std::size_t kAddedSums = static_cast<std::size_t>(PlaneSum::nearestZ);
 constexpr std::size_t kFirstScatterSum = static_cast<std::size_t>(PlaneSum::refraction);
@@ -103,9 +108,12 @@ struct PlaneSpec {
 };
 
 // Stages that draw planes. `over`: what front+tail keeps of layers that low resolution puts before the nearest one.
-enum class PlaneStage { layers, front, solids, rims, over };
+// `marks`: what layers tell besides what they look like; drawn with the layers, of the exact tier when the stage ends.
+enum class PlaneStage { layers, front, solids, rims, over, marks, solidMarks, listedDepths };
 std::vector<PlaneSpec> planesOf(const LayerModel& model, PlaneStage stage = PlaneStage::layers);
 int bitsOf(const std::vector<PlaneSpec>& planes);
+// Whether a target is left for PlaneStage::marks beside the layers'.
+bool hasRoomForMarks(const LayerModel& model);
 bool holds(const LayerModel& model, PlaneSum sum);
 // Bits of a pixel that the layers use, as PT17 counts its targets: where nothing scatters the fourth byte of beta is
 // there and holds nothing.
@@ -114,6 +122,7 @@ int usedBits(const LayerModel& model);
 constexpr int kMostTargets = 8;
 // Units of what is looked up beside the planes, and how many a resolve has.
 constexpr int kBackgroundUnit = 0, kOpaqueZUnit = 5, kSolidUnit = 6, kSpreadUnit = 11, kSpreadPlanes = 5;
+constexpr int kMarksUnit = 13, kSolidMarksUnit = 14;  // where the pyramid lies, which no reader of marks looks up
 constexpr int kLookupUnits = kSpreadUnit + kSpreadPlanes;
 
 // Where a stage finds a number that has no plane of its own.

@@ -55,6 +55,7 @@ const std::vector<HelpRow> kRows{
     {"--samples", kMethod, "N"},
     {"--samples-adaptive", kMethod, "E"},
     {"--seed", kMethod, "N"},
+    {"--noise", kMethod, ""},
     {"--masks", kMethod, ""},
     {"--correction", kMethod, ""},
     {"--inference", kMethod, ""},

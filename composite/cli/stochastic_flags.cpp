@@ -41,6 +41,11 @@ void StochasticFlags::addTo(CLI::App& verb) {
       verb.add_option("--seed", seed, "Of --method stochastic and --shadows stochastic: another seed, other noise")
           ->check(notBelowZero())
           ->capture_default_str();
+  noiseOption_ = verb.add_option("--noise", noise,
+                                 "Of --method stochastic: where noise stays from frame to frame; on object it moves, "
+                                 "turns and bends with the triangles, on screen it belongs to pixels")
+                     ->check(CLI::IsMember({"screen", "object"}))
+                     ->capture_default_str();
   masksOption_ = verb.add_option("--masks", masks, "Of --method stochastic: naive flips a coin per sample")
                      ->check(CLI::IsMember({"stratified", "naive"}))
                      ->capture_default_str();
@@ -62,7 +67,7 @@ void StochasticFlags::expectRead(const std::vector<std::string>& methods, const 
   for (const std::string& method : methods)
     if (const std::optional<Variant> variant = stochasticVariant(method)) variants.push_back(*variant);
   for (const CLI::Option* option :
-       {samplesOption_, adaptiveOption_, seedOption_, masksOption_, correctionOption_, sampledOption_})
+       {samplesOption_, adaptiveOption_, seedOption_, noiseOption_, masksOption_, correctionOption_, sampledOption_})
     if (variants.empty() && option && option->count() > 0 && !(shadows.byMaps() && option == seedOption_))
       throw UsageError(fmt::format("{}: {} {} draws no random numbers, expected {}", option->get_name(), verbFlag,
                                    fmt::join(methods, ","), kStochasticNames));
@@ -84,6 +89,7 @@ StochasticSettings StochasticFlags::settings(Variant variant, int passes) const 
   settings.corrected = correction == "on";
   settings.stratified = masks == "stratified";
   settings.adaptive = adaptive;
+  settings.onObjects = noise == "object";
   settings.seed = static_cast<std::uint32_t>(seed);
   const bool given = samplesOption_ && samplesOption_->count() > 0;
   settings.samples = given ? samples : (std::max(kDefaultSamples, passes) + passes - 1) / passes * passes;

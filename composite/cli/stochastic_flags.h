@@ -15,7 +15,7 @@ inline constexpr const char* kStochasticNames = "stochastic[:basic|alpha|depth]"
 struct StochasticFlags {
   int samples = 0, seed = 0;
   double adaptive = 0.0;
-  std::string masks = "stratified", correction = "on", sampledOn = "cpu";
+  std::string noise = "screen", masks = "stratified", correction = "on", sampledOn = "cpu";
   void addTo(CLI::App& verb);
   // Paints by samples under --method stochastic. Throws UsageError for flags that another method, or a variant, cannot
   // honour; after MethodFlags, ShadowFlags and --aa. The masks are stratified across all passes.
@@ -27,7 +27,7 @@ struct StochasticFlags {
 
  private:
   CLI::Option *samplesOption_ = nullptr, *seedOption_ = nullptr, *masksOption_ = nullptr, *correctionOption_ = nullptr,
-              *sampledOption_ = nullptr, *adaptiveOption_ = nullptr;
+              *sampledOption_ = nullptr, *adaptiveOption_ = nullptr, *noiseOption_ = nullptr;
 };
 
 }  // namespace pellucid::cli

@@ -27,9 +27,10 @@ class Winners {
   Winners(const std::vector<MethodLayer>& layers, glm::ivec2 pixel, const StochasticSettings& settings,
           const MaskTable& masks, const StochasticShare& share)
       : layers_(layers), settings_(settings), masks_(masks) {
+    const glm::uvec2 where = settings.onObjects ? glm::uvec2(0u) : glm::uvec2(pixel);
     keys_.reserve(layers.size());
     for (const MethodLayer& layer : layers)
-      keys_.push_back(shading::coinKeyOf(glm::uvec2(pixel), layer.record->identity, settings.seed));
+      keys_.push_back(shading::coinKeyOf(where, layer.record->identity, settings.seed));
     for (int c = 0; c < 3; ++c) {
       const bool same = c > 0 && sameOpacity(c, c - 1);
       if (same)

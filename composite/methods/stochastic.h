@@ -23,6 +23,9 @@ struct StochasticSettings {
   bool stratified = true;  // masks; otherwise a coin per sample
   int samples = 64;        // S of a pixel, in all passes together, [1, kMostSamples]
   std::uint32_t seed = 0;
+  // Identities hold where they are, as PassSettings::pieces makes them: noise moves with its object. Else the pixel is
+  // part of a layer's random numbers.
+  bool onObjects = false;
   // Above 0: a pixel takes more sets of S samples, each with masks of its own, until the standard error of its layers'
   // light is this part of the larger of 1 and the light, or it holds kMostSamples. Of fragment lists alone.
   double adaptive = 0.0;

@@ -68,6 +68,20 @@ void moveTo(int pass, PassSettings& sample, PassMotion& motion, PassPicture& pic
   motion.occlude(*picture.picture().gbuffer, sample);
 }
 
+// Shows the background and adds to the mean strip by strip, so that no second plane of what is shown is there.
+void addPass(int pass, const Veil& veil, Painter& painter, const EdgePasses* edges, VeilMean& mean, Journal& journal) {
+  constexpr int kRows = 64;
+  mean.begin(veil);
+  for (int y = 0; y < veil.touched.height(); y += kRows) {
+    Veil rows = rowsOf(veil, y, std::min(y + kRows, veil.touched.height()));
+    painter.showBackground(rows);
+    journal.time("average", [&] {
+      if (edges) edges->weigh(pass, rows);
+      mean.addRows(rows);
+    });
+  }
+}
+
 // While it lives, the pass draws over another depth of the same picture. Without a pass there is nothing to draw.
 class DrawnOverPicture {
  public:
@@ -168,7 +182,16 @@ const DepthPlanes* Compositor::depthPlanes(const Plan& plan, const Window& area)
   if (plan.passes == 1 && !plan.pictureMoves && plan.lowResolution == 1) return nullptr;
   // Deep layers belong to whole pixels: they are held out by what lies at the pixel's centre.
   if (shot_->deepOpaque && (plan.pictureMoves || !shot_->deep.empty())) return nullptr;
-  return &depth_.planes(shot_->opaque.gbuffer, shot_->camera, area, journal_);
+  const DepthPlanes& planes = depth_.planes(shot_->opaque.gbuffer, shot_->camera, area, journal_);
+  dropNormals(planes);
+  return &planes;
+}
+
+// Nothing but the planes reads them.
+void Compositor::dropNormals(const DepthPlanes& known) {
+  GBuffer& gbuffer = shot_->opaque.gbuffer;
+  if (!shot_->inMemory && known.part() == Window{0, 0, gbuffer.data.width(), gbuffer.data.height()})
+    gbuffer.normal = Image<glm::vec3>();
 }
 
 std::unique_ptr<EdgePasses> Compositor::edgePasses(const Plan& plan, const Window& area) {
@@ -270,6 +293,11 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
       journal.reached(static_cast<double>(i) / plan.passes);
       moveTo(i, sample, motion, moving, journal);
       Veil veil = painter->paint(sample, i);
+      if (painter->showsLater() && !motion.moves()) {
+        addPass(i, veil, *painter, edges.get(), mean, journal);
+        continue;
+      }
+      if (painter->showsLater()) painter->showBackground(veil);
       journal.time("average", [&] {
         if (edges) edges->weigh(i, veil);
         motion.relight(veil, *run.lighting->picture.gbuffer);

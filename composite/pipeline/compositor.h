@@ -73,6 +73,7 @@ class Compositor {
   // Of the picture's depth, for passes away from pixel centres; null for a deep picture, whose samples have no planes.
   //   area  of the passes, display coordinates
   const DepthPlanes* depthPlanes(const Plan& plan, const Window& area);
+  void dropNormals(const DepthPlanes& known);
   // Null where the plan takes no edge apart.
   std::unique_ptr<EdgePasses> edgePasses(const Plan& plan, const Window& area);
   Run prepare(const Request& request);

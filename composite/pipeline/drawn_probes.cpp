@@ -150,7 +150,7 @@ ProbeLists DrawnProbes::listed(const PassSettings& sample, VolumeRule rule) cons
 void DrawnProbes::listLow(Pass& pass) const {
   const GBuffer& gbuffer = *context_.picture.gbuffer;
   TransparentPass& triangles = *context_.sources.triangles();
-  pass.view = lowViewOf(gbuffer, solidsOf(triangles, fullResolutionPart(context_.plan, pass.sample)),
+  pass.view = lowViewOf(gbuffer, opaqueDepth(triangles, fullResolutionPart(context_.plan, pass.sample), gbuffer),
                         context_.shot.camera, context_.plan.lowResolution, context_.picture.planes);
   const DrawnOver over(triangles, *pass.view, gbuffer, context_.shot.camera);
   triangles.fragments(lowResolutionPart(pass.sample), [&](const FragmentLists& lists) {

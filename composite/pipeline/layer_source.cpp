@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "composite/low_resolution.h"
+#include "shaders/shading.h"
 
 namespace pellucid {
 namespace {
@@ -19,11 +20,26 @@ FragmentLists emptyLists(const Window& window) {
 
 }  // namespace
 
+FragmentLists tiedToPixels(const FragmentLists& lists, FragmentLists joined) {
+  const auto width = static_cast<std::size_t>(joined.window.width());
+  for (std::size_t pixel = 0; pixel + 1 < joined.offsets.size(); ++pixel) {
+    const std::uint64_t own = lists.offsets[pixel + 1] - lists.offsets[pixel];
+    const glm::uvec2 at(joined.window.x0 + static_cast<int>(pixel % width),
+                        joined.window.y0 + static_cast<int>(pixel / width));
+    for (std::uint64_t i = joined.offsets[pixel] + own; i < joined.offsets[pixel + 1]; ++i)
+      joined.fragments[i].identity = shading::coinKeyOf(at, joined.fragments[i].identity, 0u);
+  }
+  return joined;
+}
+
 void LayerSources::each(const SourceView& view, const ListSink& sink) const {
   ListSink chain = sink;
   const LowResolutionFragments* low = view.low;
   const auto joinLow = [&] {
-    if (low) chain = [low, next = std::move(chain)](const FragmentLists& lists) { next(low->among(lists)); };
+    if (low)
+      chain = [low, pieces = view.settings.pieces, next = std::move(chain)](const FragmentLists& lists) {
+        next(pieces ? tiedToPixels(lists, low->among(lists)) : low->among(lists));
+      };
     low = nullptr;
   };
   for (auto source = joined_.rbegin(); source != joined_.rend(); ++source) {

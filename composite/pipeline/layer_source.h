@@ -26,6 +26,11 @@ struct SourceView {
   const LowResolutionFragments* low = nullptr;
 };
 
+// Where identities name pieces of triangles and so stand for the pixel, too (PassSettings::pieces), those of layers
+// that are no triangles get it mixed in.
+//   joined  `lists` with such layers behind each pixel's own
+FragmentLists tiedToPixels(const FragmentLists& lists, FragmentLists joined);
+
 class LayerSource {
  public:
   virtual ~LayerSource() = default;

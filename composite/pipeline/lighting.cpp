@@ -32,7 +32,6 @@ GBuffer relitOf(const GBuffer& picture, Image<glm::vec4> beauty) {
   relit.hasAlpha = picture.hasAlpha;
   relit.viewZ = picture.viewZ.shown(nullptr);
   relit.depthPrecision = picture.depthPrecision;
-  relit.normal = picture.normal.shown(nullptr);
   relit.occlusion = picture.occlusion.shown(nullptr);
   relit.camera = picture.camera;
   return relit;

@@ -1,6 +1,9 @@
 #include "composite/pipeline/low_layers.h"
 
+#include <algorithm>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "composite/fold.h"
 #include "composite/list_order.h"
@@ -35,11 +38,10 @@ void meanDepths(const FragmentLists& lists, Image<float>& meanZ) {
 
 }  // namespace
 
-Image<glm::vec4> solidsOf(TransparentPass& pass, const PassSettings& full) {
-  const Image<float> z = pass.solidDepth(full);
-  Image<glm::vec4> solid(z.width(), z.height());
-  for (std::size_t i = 0; i < z.size(); ++i) solid[i] = glm::vec4(0.0f, 0.0f, 0.0f, z[i]);
-  return solid;
+Image<float> opaqueDepth(TransparentPass& pass, const PassSettings& full, const GBuffer& gbuffer) {
+  Image<float> z = pass.solidDepth(full);
+  for (std::size_t i = 0; i < z.size(); ++i) z[i] = std::min(gbuffer.viewZ[i], z[i]);
+  return z;
 }
 
 LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettings& sample, int pass, Mixer& mixer,
@@ -47,10 +49,11 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
   const GBuffer& gbuffer = *context.picture.gbuffer;
   TransparentPass& triangles = *context.sources.triangles();
   triangles.over(*context.picture.centres, context.shot.camera);  // solids are drawn at pixel centres
-  const Image<glm::vec4> solids = solidsOf(triangles, fullResolutionPart(context.plan, sample));
+  Image<float> opaqueZ = opaqueDepth(triangles, fullResolutionPart(context.plan, sample), gbuffer);
   triangles.over(gbuffer, context.shot.camera);
-  const LowView view =
-      lowViewOf(gbuffer, solids, context.shot.camera, context.plan.lowResolution, context.picture.planes);
+  const auto seen = std::make_shared<const LowView>(
+      lowViewOf(gbuffer, std::move(opaqueZ), context.shot.camera, context.plan.lowResolution, context.picture.planes));
+  const LowView& view = *seen;
   const PassSettings part = lowResolutionPart(sample);
   const Window& texels = view.gbuffer.data;
   Veil veil(texels.width(), texels.height());
@@ -58,7 +61,7 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
   OitPlanes scatter = emptyPlanes(texels, texels);
   const LowBetween others{sample.fog != nullptr, context.picture.deepOpaque};
   const std::shared_ptr<LowRuns> runs =
-      mixer.cutsTexels() ? std::make_shared<LowRuns>(view, sample.sample, others) : nullptr;
+      mixer.cutsTexels() ? std::make_shared<LowRuns>(seen, sample.sample, others) : nullptr;
   {
     const DrawnOver over(triangles, view, gbuffer, context.shot.camera);
     triangles.fragments(part, [&](const FragmentLists& given) {
@@ -71,8 +74,8 @@ LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettin
     });
     statistics = triangles.statistics();
   }
-  const OitPlanes low = planesOfVeil(veil, meanZ, view, scatter.scatters() ? &scatter : nullptr);
-  LowResolutionFragments result(low, view, sample.sample, gbuffer.data);
+  LowResolutionFragments result(planesOfVeil(veil, meanZ, view, scatter.scatters() ? &scatter : nullptr), seen,
+                                sample.sample, gbuffer.data);
   if (!runs || result.scatters()) return result;
   runs->finish();
   result.cutByLayers(runs);

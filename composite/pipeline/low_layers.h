@@ -5,8 +5,9 @@
 
 namespace pellucid {
 
-// Solids of the layers of full resolution, planar z alone: what stands behind them at low resolution is hidden.
-Image<glm::vec4> solidsOf(TransparentPass& pass, const PassSettings& full);
+// Of the picture and of the solids among the layers of full resolution: what stands behind either at low resolution is
+// hidden.
+Image<float> opaqueDepth(TransparentPass& pass, const PassSettings& full, const GBuffer& gbuffer);
 
 // Draws them over a view of the picture, composites each texel by the mixer, and brings the result to full resolution.
 //   statistics  of that pass

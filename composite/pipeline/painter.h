@@ -26,6 +26,10 @@ class Painter {
   //   sample  with the light, and its place in the pixel
   //   pass    its number
   virtual Veil paint(const PassSettings& sample, int pass) = 0;
+  // Whether paint() has left it to showBackground() what the pass's layers show of the background.
+  virtual bool showsLater() const { return false; }
+  //   rows  of the veil, as rowsOf() cuts them
+  virtual void showBackground(Veil& rows) { (void)rows; }
   // After all passes: false where they do not hold together, and are all to be painted again.
   virtual bool settled() { return true; }
   // Adds to the mean of the passes what only all of them together can tell.

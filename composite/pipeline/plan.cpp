@@ -249,6 +249,7 @@ PassSettings samplePass(const PassSettings& pass, const Plan& plan, int index) {
   sample.sample = samplePosition(index, plan.passes, plan.pixelFilter);
   sample.footprint = 1.0f / std::sqrt(static_cast<float>(plan.passes));
   if (plan.passes > 1) sample.footprint *= static_cast<float>(1.0 / plan.pixelFilter.peak());
+  if (const auto* samples = plan.as<PaintSamples>()) sample.pieces = samples->settings.onObjects;
   return sample;
 }
 

@@ -46,7 +46,7 @@ uint32_t usageOf(const PlannedPass& pass, uint32_t image) {
 pld_recipe::pld_recipe(const Permutation& of, const pld_recipe_info& info)
     : permutation(of), plan(recipePlan(permutation, {info.clip})) {
   addImages();
-  for (int i = 0; i < listBlocks(permutation); ++i) buffers.push_back({pellucid::listBlockName(i)});
+  for (int i = 0; i < listBlocks(permutation); ++i) buffers.push_back({listName(permutation, i)});
   kept_.resize(plan.passes.size());
   for (std::size_t i = 0; i < kept_.size(); ++i) addPass(plan.passes[i], kept_[i], info);
   addLives();
@@ -71,9 +71,10 @@ void pld_recipe::addPass(const PlannedPass& planned, Kept& kept, const pld_recip
   const int storage = draws ? static_cast<int>(info.storage_binding) : kNumbersBinding + 1;
   for (const PlannedRead& read : planned.reads)
     kept.reads.push_back({read.image, read.binding + static_cast<uint32_t>(units), read.layer, read.sampler.c_str()});
-  for (int i = 0; i < planned.lists; ++i)
-    kept.storage.push_back({static_cast<uint32_t>(i), static_cast<uint32_t>(storage + i),
-                            planned.emptiesLists && i == 0 ? 1 : 0, pellucid::listBlockName(i)});
+  for (int i = 0; i < listBlocks(permutation); ++i)
+    if (planned.lists >> i & 1u)
+      kept.storage.push_back({static_cast<uint32_t>(i), static_cast<uint32_t>(storage + i),
+                              planned.emptiesLists && i == 0 ? 1 : 0, listName(permutation, i)});
   pld_recipe_pass pass{};
   pass.name = planned.name.c_str();
   pass.kind = planned.kind;

@@ -73,6 +73,8 @@ pld_status checkFrame(Device& device, const pld_frame& frame, int width, int hei
     return device.fail(PLD_ERROR_SIZE, "%s: frame: found %dx%d, expected at most pld_resize()'s %dx%d", kBegin,
                        frame.width, frame.height, width, height);
   if (const pld_status status = checkNumbers(device, kBegin, frame, kEveryField); status != PLD_OK) return status;
+  if (const pld_status status = told(device, judgeOpacity(judgeOf(device), kBegin, frame)); status != PLD_OK)
+    return status;
   if (const pld_status status = told(device, judgeFixed(judgeOf(device), kBegin, "pld_fix()", frame)); status != PLD_OK)
     return status;
   if (device.trusts()) {

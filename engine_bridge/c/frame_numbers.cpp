@@ -117,10 +117,11 @@ const char* changedField(const Permutation& permutation, const pld_frame& frame)
 
 }  // namespace
 
-// Of 0.1 it ended before occlusion_texture, of 0.5 before weight_reference.
+// Of 0.1 it ended before occlusion_texture, of 0.5 before weight_reference, of 0.13 before depth_opacity.
 bool takeWhole(const pld_frame& frame, pld_frame& whole) {
   if (frame.struct_size != offsetof(pld_frame, occlusion_texture) &&
-      frame.struct_size != offsetof(pld_frame, weight_reference) && frame.struct_size != sizeof(pld_frame))
+      frame.struct_size != offsetof(pld_frame, weight_reference) &&
+      frame.struct_size != offsetof(pld_frame, depth_opacity) && frame.struct_size != sizeof(pld_frame))
     return false;
   std::memcpy(&whole, &frame, frame.struct_size);
   return true;
@@ -168,6 +169,14 @@ pld_status judgeLow(const FrameJudge& judge, const char* call, const pld_frame& 
     return judge.fail(PLD_ERROR_SIZE, "%s: frame: found %dx%d, expected multiples of low_factor %d", call, frame.width,
                       frame.height, frame.low_factor);
   return PLD_OK;
+}
+
+pld_status judgeOpacity(const FrameJudge& judge, const char* call, const pld_frame& frame) {
+  const float opacity = frame.depth_opacity;
+  if (judge.permutation.reachesOpacity() ? opacity >= 0.0f && opacity <= 1.0f : std::isfinite(opacity)) return PLD_OK;
+  return judge.fail(PLD_ERROR_ARGUMENT, "%s: frame.depth_opacity: found %g, expected a number%s", call,
+                    static_cast<double>(opacity),
+                    judge.permutation.reachesOpacity() ? " from 0 to 1" : ", though this pass does not read it");
 }
 
 pld_status judgeFixed(const FrameJudge& judge, const char* call, const char* by, const pld_frame& frame) {

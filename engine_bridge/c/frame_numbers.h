@@ -30,6 +30,8 @@ pld_status judgeNumbers(const FrameJudge& judge, const char* call, const pld_fra
 pld_status judgeFixed(const FrameJudge& judge, const char* call, const char* by, const pld_frame& frame);
 // The form of PLD_FEATURE_RIMS.
 pld_status judgeOcclusion(const FrameJudge& judge, const char* call, const pld_frame& frame);
+// The opacity of PLD_VIEW_OPACITY_DEPTH.
+pld_status judgeOpacity(const FrameJudge& judge, const char* call, const pld_frame& frame);
 pld_status judgeLow(const FrameJudge& judge, const char* call, const pld_frame& frame);
 
 }  // namespace pellucid::c

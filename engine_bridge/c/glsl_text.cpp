@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "engine_bridge/c/word_template.h"
 #include "shaders/shader_source.h"
@@ -60,12 +61,31 @@ constexpr const char* kEsPrecision =
     "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
     "precision highp sampler2DArray;\n";
 
+// Without the lines between `#ifdef PLD_MARKS` and its #endif: passes that keep no marks have the texts, and so the
+// hashes, that they would have if there were none.
+std::string withoutMarks(const std::string& text) {
+  constexpr std::string_view section = "#ifdef PLD_MARKS\n";
+  std::string out;
+  int depth = 0;  // of conditions inside of a section
+  for (std::size_t at = 0, end = 0; at < text.size(); at = end) {
+    end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string_view line(text.data() + at, end - at);
+    if (depth == 0 && line != section) {
+      out.append(line);
+      continue;
+    }
+    if (begins(line, "#if")) ++depth;
+    if (begins(line, "#endif")) --depth;
+  }
+  return out;
+}
+
 // A file for hosts, read once in a process.
 struct HostFile {
   HostFile(const HostFile&) = delete;
   HostFile& operator=(const HostFile&) = delete;
-  explicit HostFile(const std::string& file)
-      : text(wholeText(file)),
+  HostFile(const std::string& file, bool marked)
+      : text(marked ? wholeText(file) : withoutMarks(wholeText(file))),
         declared(declaredIn(text)),
         words(text, [](std::string_view word) { return !std::isdigit(static_cast<unsigned char>(word[0])); }) {}
 
@@ -80,17 +100,17 @@ struct HostFile {
   WordTemplate words;
 };
 
-const HostFile& hostFile(const std::string& file) {
+const HostFile& hostFile(const std::string& file, bool marked) {
   static std::mutex mutex;
-  static std::map<std::string, HostFile> files;
+  static std::map<std::pair<std::string, bool>, HostFile> files;
   const std::lock_guard lock(mutex);
-  return files.try_emplace(file, file).first->second;
+  return files.try_emplace({file, marked}, file, marked).first->second;
 }
 
 std::string hostText(const std::string& file, std::vector<std::string> defines, const GlslTarget& target,
                      const SeamPlaces& at, const Names& names) {
   if (target.dialect == PLD_DIALECT_ES) defines.emplace_back("LOOKED_UP_LATE");
-  const HostFile& body = hostFile(file);
+  const HostFile& body = hostFile(file, std::find(defines.begin(), defines.end(), "PLD_MARKS") != defines.end());
   const std::string head = definesText(defines);
   const Words defined = declaredIn(head);
   const auto place = [&](std::string_view word) {

@@ -44,8 +44,8 @@ struct SeamPlaces {
   int uniformBinding, firstUnit, firstStorage = 0;
 };
 
-// What shaders/gl/exact_lists.glsl looks for: its blocks at storage bindings `first` and after.
-constexpr int kListBlocks = 5;
+// What shaders/gl/exact_lists.glsl and listed_marks.glsl look for: blocks at storage bindings `first` and after.
+constexpr int kListBlocks = 6;
 std::vector<std::string> storageDefines(int first);
 
 // Texts for hosts, without a #version line. Names that the host does not call begin with pld_, so that they meet none

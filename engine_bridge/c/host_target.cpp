@@ -9,7 +9,7 @@ bool isOfShadows(pld_view view) {
 }
 
 bool isOutput(pld_view view) {
-  return view == PLD_VIEW_REACTIVE || view == PLD_VIEW_NEAREST_DEPTH;
+  return view >= PLD_VIEW_REACTIVE && view <= PLD_VIEW_IDENTITY;
 }
 
 bool isOfRims(pld_view view) {
@@ -41,9 +41,10 @@ pld_status HostTarget::check(const pld_target& target, int width, int height, GL
                         "pld_resolve: target %u is the frame's colour_texture, which is read meanwhile", target.name);
   if (textures_.holds(target.name))
     return device_.fail(PLD_ERROR_TEXTURE, "pld_resolve: target %u is a plane of this pass", target.name);
-  if (!isColour(facts.format))
-    return device_.fail(PLD_ERROR_FORMAT, "pld_resolve: target has format 0x%x, expected RGB or RGBA",
-                        static_cast<unsigned>(facts.format));
+  const bool output = isOutput(target.view);
+  if (!isColour(facts.format) && !(output && isLinearDepth(facts.format)))
+    return device_.fail(PLD_ERROR_FORMAT, "pld_resolve: target has format 0x%x, expected RGB or RGBA%s",
+                        static_cast<unsigned>(facts.format), output ? ", or R or RG of floats" : "");
   if (facts.width < width || facts.height < height)
     return device_.fail(PLD_ERROR_SIZE, "pld_resolve: target is %dx%d, expected at least %s %dx%d", facts.width,
                         facts.height, isOfShadows(target.view) ? "a face's" : "the frame's", width, height);

@@ -28,7 +28,7 @@ class HostTarget {
 
 // Views of shadow maps; of what later passes ask for; of rims.
 bool isOfShadows(pld_view view);
-bool isOutput(pld_view view);  // PLD_FEATURE_OUTPUTS
+bool isOutput(pld_view view);  // PLD_FEATURE_OUTPUTS, _DEPTHS, _MOTION, _IDENTITY
 bool isOfRims(pld_view view);
 
 }  // namespace pellucid::c

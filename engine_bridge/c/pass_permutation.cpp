@@ -77,6 +77,41 @@ const char* nameOf(LayerPart part) {
   }
 }
 
+std::string refusalOfMarks(const Permutation& p) {
+  const bool depths = p.has(PLD_FEATURE_DEPTHS);
+  if (p.published() && (depths || p.marked()))
+    return std::string("found ") +
+           (depths      ? "PLD_FEATURE_DEPTHS"
+            : p.moves() ? "PLD_FEATURE_MOTION"
+                        : "PLD_FEATURE_IDENTITY") +
+           " with PLD_TIER_PUBLISHED, which has the planes of its paper and no other";
+  if (depths && p.lowOver())
+    return "found PLD_FEATURE_DEPTHS with PLD_FEATURE_LOW_RESOLUTION and PLD_METHOD_FRONT_TAIL, which keep no depth of "
+           "what lies over the nearest layer";
+  if (p.marked() && !hasRoomForMarks(modelOf(p)))
+    return "found PLD_FEATURE_MOTION or PLD_FEATURE_IDENTITY with features whose planes take all eight targets: "
+           "expected PLD_TIER_EXACT, or one of PLD_FEATURE_OUTPUTS, PLD_FEATURE_DEPTHS, PLD_FEATURE_LIGHT, "
+           "PLD_FEATURE_COLOURED and PLD_FEATURE_DISPERSION less";
+  return {};
+}
+
+// Every stage takes what a surface tells, so that one material serves all of them; two keep it.
+void defineMarks(const Permutation& p, pld_stage stage, std::vector<std::string>& defines) {
+  const bool layers = stage == PLD_STAGE_LAYERS, solids = stage == PLD_STAGE_SOLIDS;
+  const auto define = [&](const char* name, bool wanted) {
+    if (wanted) defines.emplace_back(name);
+  };
+  define("PLD_MARKS", true);
+  if (p.exact() && (layers || solids)) defines.push_back(marksPlace(p));
+  define("MARKS_HERE", layers && !p.exact());
+  define("MOTION", layers && !p.exact() && p.moves());
+  define("NEAREST_HERE", layers && !p.exact() && p.named());
+  if (!p.exact() && (layers || solids))
+    defines.push_back(markOutputs(modelOf(p), layers ? PlaneStage::marks : PlaneStage::solidMarks));
+  else
+    define("MARK_OUTPUTS", true);
+}
+
 }  // namespace
 
 bool isPerspective(const float* p) {
@@ -100,7 +135,8 @@ Focal focalOf(const pld_frame& frame, int pixelsATexel) {
 
 const uint32_t kEveryFeature = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_REFRACTION |
                                PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS |
-                               PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS;
+                               PLD_FEATURE_LOW_RESOLUTION | PLD_FEATURE_OUTPUTS | PLD_FEATURE_DEPTHS |
+                               PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY;
 
 LayerModel modelOf(const Permutation& p) {
   LayerModel model;
@@ -116,10 +152,12 @@ LayerModel modelOf(const Permutation& p) {
   model.disperses = p.has(PLD_FEATURE_DISPERSION);
   model.sorted = p.sorted();
   model.front = p.fronts();
-  model.nearestDepths = p.atLowResolution || (p.outputs() && !p.sorted());
+  model.nearestDepths = p.atLowResolution || ((p.outputs() || p.has(PLD_FEATURE_DEPTHS)) && !p.sorted());
   model.solids = p.has(PLD_FEATURE_SOLIDS);
   model.rims = p.rimsApart();
   model.lowResolution = p.low() && !p.atLowResolution;
+  model.moves = p.moves() && !p.atLowResolution;
+  model.named = p.named() && !p.atLowResolution;
   return model;
 }
 
@@ -136,6 +174,7 @@ std::string refusalOf(const Permutation& p, bool maybeLight) {
     return "features: found refraction or diffusion, expected them with PLD_METHOD_PHENOMENOLOGICAL alone";
   if (p.outputs() && p.published())
     return "found PLD_FEATURE_OUTPUTS with PLD_TIER_PUBLISHED, which keeps no depth of a layer";
+  if (std::string refusal = refusalOfMarks(p); !refusal.empty()) return refusal;
   const LayerConflict conflict = conflictOf(modelOf(p));
   if (!conflict) return {};
   return std::string("found ") + nameOf(conflict.part) + (conflict.without ? " without " : " with ") +
@@ -166,6 +205,7 @@ std::vector<std::string> seamDefines(const Permutation& p, pld_stage stage) {
   define("UNCOUNTED", p.published());
   define("REFRACTS", model.refracts && (layers || low));
   define("DIFFUSES", model.diffuses && (layers || low));
+  if (p.marked()) defineMarks(p, stage, defines);
   if (!p.exact()) return defines;
   define("EXACT", true);
   define("LISTS_OFFSETS", listsOffsets(model, planeStageOf(stage)));
@@ -183,8 +223,35 @@ std::vector<std::string> foldDefines(const Permutation& p, pld_stage stage) {
   return defines;
 }
 
+std::vector<std::string> marksDefines(const Permutation& p) {
+  std::vector<std::string> defines;
+  if (p.marked()) {
+    defines.emplace_back("MARKS");
+    defines.push_back(marksPlace(p));
+  }
+  if (p.reachesOpacity()) defines.emplace_back("DEPTHS");
+  if (p.reachesOpacity() && p.has(PLD_FEATURE_SOLIDS)) defines.emplace_back("SOLIDS");
+  return defines;
+}
+
 int listBlocks(const Permutation& p, pld_stage stage) {
   return pellucid::listBlocks(modelOf(p), planeStageOf(stage));
+}
+
+int listBlocks(const Permutation& p) {
+  if (!p.exact()) return 0;
+  int most = listBlocks(p, PLD_STAGE_LAYERS);
+  if (p.rimsApart()) most = std::max(most, listBlocks(p, PLD_STAGE_RIMS));
+  return most + (p.marked() ? 1 : 0);
+}
+
+const char* listName(const Permutation& p, int block) {
+  return p.marked() && block == listBlocks(p) - 1 ? "PldMarks" : pellucid::listBlockName(block);
+}
+
+// Behind the blocks that the pass has besides.
+std::string marksPlace(const Permutation& p) {
+  return "LISTS_MARKS PLD_STORAGE_" + std::to_string(listBlocks(p) - 1);
 }
 
 std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip) {

@@ -31,7 +31,7 @@ struct Permutation {
   // Fragments are listed and summed at the end of a stage, not blended.
   bool exact() const { return tier == PLD_TIER_EXACT; }
   // Whether the nearest layer is drawn apart; lists know it.
-  bool frontStage() const { return fronts() && !exact(); }
+  bool frontStage() const { return (fronts() || named()) && !exact(); }
   bool published() const { return tier == PLD_TIER_PUBLISHED; }
   bool grey() const { return !published() && !has(PLD_FEATURE_COLOURED); }
   bool light() const { return !published() && (has(PLD_FEATURE_LIGHT) || low()); }
@@ -42,6 +42,12 @@ struct Permutation {
   bool rimsInSeam() const { return rims() && (published() || fronts() || sorted()); }
   bool losesLight() const { return published() && has(PLD_FEATURE_LIGHT); }
   bool outputs() const { return has(PLD_FEATURE_OUTPUTS); }
+  bool moves() const { return has(PLD_FEATURE_MOTION); }
+  bool named() const { return has(PLD_FEATURE_IDENTITY); }
+  bool marked() const { return moves() || named(); }  // layers tell more than what they look like
+  bool meansDepth() const { return has(PLD_FEATURE_DEPTHS) && !lowOver(); }
+  // Lists alone tell in which order opacity grows; what comes from low resolution is in none.
+  bool reachesOpacity() const { return has(PLD_FEATURE_DEPTHS) && exact() && !low(); }
   bool rimsApart() const { return rims() && !rimsInSeam(); }
   int seamUnits() const { return rimsInSeam() ? kMostSeamUnits : 3; }  // textures that the seam reads
   // Whether planar depth is needed beside the host's.
@@ -80,8 +86,15 @@ std::vector<std::string> seamDefines(const Permutation& permutation, pld_stage s
 std::vector<std::string> depthDefines(pld_depth depth, pld_clip clip);
 //   showsThrough  false for what looks at a pixel's layers and not at the background behind them
 std::vector<std::string> resolveDefines(const Permutation& permutation, bool showsThrough = true);
-// Of the exact tier: defines of shaders/gl/exact_fold.frag; how many blocks the lists of a stage take.
-std::vector<std::string> foldDefines(const Permutation& permutation, pld_stage stage);
+// How many storage blocks the lists of the exact tier take; 0 in other tiers. Of a stage's lists, without marks.
+int listBlocks(const Permutation& permutation);
 int listBlocks(const Permutation& permutation, pld_stage stage);
+// Of each of them, as shaders/gl/exact_lists.glsl and listed_marks.glsl have it.
+const char* listName(const Permutation& permutation, int block);
+// Of the exact tier: defines of shaders/gl/exact_fold.frag, of exact_marks.frag.
+std::vector<std::string> foldDefines(const Permutation& permutation, pld_stage stage);
+std::vector<std::string> marksDefines(const Permutation& permutation);
+// Of it with marks: which of PLD_STORAGE_* of shaders/gl/exact_lists.glsl the block of marks is, as a define.
+std::string marksPlace(const Permutation& permutation);
 
 }  // namespace pellucid::c

@@ -10,9 +10,13 @@ namespace {
 constexpr int kFarthestUnit = 5;  // of shaders/gl/low_texel.frag
 constexpr uint32_t kColours = 7;  // of a write mask
 
-// Whether the layers' sums have a plane for it, which shaders/gl/packing.glsl unpacks.
-bool isPacked(PlaneSum sum) {
-  return sum <= PlaneSum::light;
+// Blocks that the lists of a stage take, of those that the pass has: bits.
+uint32_t listsOf(const Permutation& p, pld_stage stage) {
+  return (1u << listBlocks(p, stage)) - 1u;
+}
+
+uint32_t marksOf(const Permutation& p) {
+  return p.marked() ? 1u << (listBlocks(p) - 1) : 0;
 }
 
 }  // namespace
@@ -49,10 +53,12 @@ void PlanBuilder::addStage(pld_stage stage, const char* name, const Planes& plan
   pass.part = low ? PartOfFrame::low : PartOfFrame::picture;
   readSeam(pass);
   if (p_.exact()) {
-    pass.lists = listBlocks(p_, stage);
+    pass.lists = listsOf(p_, stage) | (solids || stage == PLD_STAGE_LAYERS ? marksOf(p_) : 0u);
     pass.emptiesLists = true;
   } else {
     attach(pass, planes, PLD_LOAD_CLEAR, !solids);
+    if (solids) attach(pass, solidMarks_, PLD_LOAD_CLEAR, false);
+    if (stage == PLD_STAGE_LAYERS) attach(pass, marks_, PLD_LOAD_CLEAR, true);
   }
   if (solids && !p_.exact()) {
     pass.depthImage = solidDepth_;
@@ -62,6 +68,7 @@ void PlanBuilder::addStage(pld_stage stage, const char* name, const Planes& plan
     pass.depthImage = depth_;
     pass.compare = p_.depth == PLD_DEPTH_REVERSED ? PLD_COMPARE_GREATER_OR_EQUAL : PLD_COMPARE_LESS_OR_EQUAL;
   }
+  if (p_.exact() && stage == PLD_STAGE_LAYERS && (!marks_.empty() || !listedDepths_.empty())) addListedMarks();
   if (p_.exact()) addFold(stage, name, planes);
 }
 
@@ -76,6 +83,26 @@ void PlanBuilder::addFold(pld_stage stage, const char* name, const Planes& plane
   if (!solids && !p_.sorted()) pass.numbers.push_back(StageNumber::weight);
   if (!solids && p_.sorted() && !solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solidHere");
   attach(pass, planes, PLD_LOAD_ANY, false);
+  if (solids && !solidMarks_.empty()) addSolidMarks();
+}
+
+void PlanBuilder::addSolidMarks() {
+  PlannedPass& pass = addPass("solids marked", PLD_STAGE_SOLIDS, "gl/exact_solid_marks.frag", {marksPlace(p_)});
+  pass.lists = listsOf(p_, PLD_STAGE_SOLIDS) | marksOf(p_);
+  pass.numbers = {StageNumber::rowLength};
+  attach(pass, solidMarks_, PLD_LOAD_ANY, false);
+}
+
+// Before the fold, of which that of PLD_METHOD_OVER leaves no list whose beginning is known.
+void PlanBuilder::addListedMarks() {
+  PlannedPass& pass = addPass("layers marked", PLD_STAGE_LAYERS, "gl/exact_marks.frag", marksDefines(p_));
+  pass.lists = listsOf(Permutation{}, PLD_STAGE_LAYERS) | marksOf(p_);
+  pass.numbers = {StageNumber::rowLength};
+  attach(pass, marks_, PLD_LOAD_ANY, false);
+  if (listedDepths_.empty()) return;
+  pass.numbers.push_back(StageNumber::depthOpacity);
+  if (!solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solidHere");
+  attach(pass, listedDepths_, PLD_LOAD_ANY, false);
 }
 
 void PlanBuilder::addStages() {
@@ -138,7 +165,7 @@ void PlanBuilder::addLowResolution() {
   for (std::size_t i = 0; i < texels_.size(); ++i) read(upsampled, texels_[i], static_cast<int>(i), kTexels[i]);
   read(upsampled, planarZ_, 3, "opaqueZ");
   if (!solids_.empty()) read(upsampled, solids_[0].image, 4, "solid");
-  if (!front_.empty()) read(upsampled, front_[0].image, 5, "frontZ");
+  if (p_.fronts()) read(upsampled, front_[0].image, 5, "frontZ");
   upsampled.numbers = {StageNumber::texelCount, StageNumber::texelsAPixel};
   if (p_.scatters()) {
     upsampled.numbers.push_back(StageNumber::factorAsFloat);
@@ -164,6 +191,8 @@ RecipePlan recipePlan(const Permutation& permutation, const PlanShape& shape) {
   builder.addLowResolution();
   builder.addSpread();
   builder.addPicture();
+  builder.addMasks();
+  builder.addOutputs();
   builder.addDebugViews();
   return builder.plan;
 }

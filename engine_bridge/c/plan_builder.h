@@ -17,6 +17,8 @@ class PlanBuilder : public ResolvePlan {
  private:
   void addStage(pld_stage stage, const char* name, const Planes& planes);
   void addFold(pld_stage stage, const char* name, const Planes& planes);
+  void addSolidMarks();
+  void addListedMarks();
   void readSeam(PlannedPass& pass) const;
 };
 

@@ -29,10 +29,7 @@ void PlanParts::addImages() {
   depth_ = host("depth", PLD_ROLE_DEPTH);
   if (p_.rims()) occlusion_ = host("occlusion", PLD_ROLE_OCCLUSION);
   picture_ = host("picture", PLD_ROLE_PICTURE);
-  if (p_.outputs()) {
-    reactive_ = host("reactive", PLD_ROLE_REACTIVE);
-    nearestDepth_ = host("nearest depth", PLD_ROLE_NEAREST_DEPTH);
-  }
+  addOutputImages();
   const LayerModel model = modelOf(p_);
   layers_ = addPlanes(c::planesOf(p_));
   if (p_.planarDepth()) planarZ_ = own("opaqueZ", PLD_FORMAT_R32F);
@@ -47,6 +44,22 @@ void PlanParts::addImages() {
     for (const char* name : kPyramid)
       pyramid_.push_back(
           own(name, PLD_FORMAT_RGBA32F, PartOfFrame::pyramid, static_cast<uint32_t>(shape_.atlasLayers)));
+  marks_ = addPlanes(pellucid::planesOf(model, PlaneStage::marks));
+  if (p_.marked() && p_.has(PLD_FEATURE_SOLIDS))
+    solidMarks_ = addPlanes(pellucid::planesOf(model, PlaneStage::solidMarks));
+  if (p_.reachesOpacity()) listedDepths_ = addPlanes(pellucid::planesOf(model, PlaneStage::listedDepths));
+}
+
+void PlanParts::addOutputImages() {
+  const auto host = [&](const char* name, pld_role role) { return add({name, role}); };
+  if (p_.outputs()) {
+    reactive_ = host("reactive", PLD_ROLE_REACTIVE);
+    nearestDepth_ = host("nearest depth", PLD_ROLE_NEAREST_DEPTH);
+  }
+  if (p_.meansDepth()) meanDepth_ = host("mean depth", PLD_ROLE_MEAN_DEPTH);
+  if (p_.reachesOpacity()) opacityDepth_ = host("opacity depth", PLD_ROLE_OPACITY_DEPTH);
+  if (p_.moves()) motion_ = host("motion", PLD_ROLE_MOTION);
+  if (p_.named()) identity_ = host("identity", PLD_ROLE_IDENTITY);
 }
 
 void PlanParts::addLowImages() {

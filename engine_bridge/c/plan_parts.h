@@ -12,6 +12,11 @@ constexpr const char* kPyramid[] = {"spreadColour", "spreadLimits", "spreadMomen
                                     "spreadRateColour"};
 constexpr const char* kTexels[] = {"radianceTexels", "opacityTexels", "depthTexels"};
 
+// Whether the layers' sums have a plane for it, which shaders/gl/packing.glsl unpacks.
+constexpr bool isPacked(PlaneSum sum) {
+  return sum <= PlaneSum::light;
+}
+
 class PlanParts {
  public:
   PlanParts(const Permutation& permutation, const PlanShape& shape) : p_(permutation), shape_(shape) {
@@ -39,15 +44,17 @@ class PlanParts {
   const PlanShape shape_;
   uint32_t colour_ = PLD_NO_IMAGE, depth_ = PLD_NO_IMAGE, occlusion_ = PLD_NO_IMAGE, picture_ = PLD_NO_IMAGE,
            reactive_ = PLD_NO_IMAGE, nearestDepth_ = PLD_NO_IMAGE, planarZ_ = PLD_NO_IMAGE, solidDepth_ = PLD_NO_IMAGE,
-           farthestZ_ = PLD_NO_IMAGE;
+           farthestZ_ = PLD_NO_IMAGE, meanDepth_ = PLD_NO_IMAGE, opacityDepth_ = PLD_NO_IMAGE, motion_ = PLD_NO_IMAGE,
+           identity_ = PLD_NO_IMAGE;
   std::vector<uint32_t> texels_, pyramid_;
-  Planes solids_, front_, layers_, rims_, low_, over_;
+  Planes solids_, front_, layers_, rims_, low_, over_, marks_, solidMarks_, listedDepths_;
 
  private:
   uint32_t add(PlannedImage image);
   uint32_t own(const char* name, pld_format format, PartOfFrame part = PartOfFrame::picture, uint32_t layers = 1);
   Planes addPlanes(const std::vector<PlaneSpec>& specs, PartOfFrame part = PartOfFrame::picture,
                    const char* prefix = "");
+  void addOutputImages();
   void addLowImages();
 };
 

@@ -58,6 +58,14 @@ void ResolvePlan::addPicture() {
   PlannedPass& pass = addShown("picture", "gl/picture.frag", PLD_VIEW_PICTURE, PLD_VIEW_PICTURE);
   readResolved(pass, true, false);
   attachWhole(pass, picture_);
+}
+
+void ResolvePlan::addOutputs() {
+  addDepths();
+  addMarks();
+}
+
+void ResolvePlan::addMasks() {
   if (!p_.outputs()) return;
   for (const bool depth : {false, true}) {
     const int view = depth ? PLD_VIEW_NEAREST_DEPTH : PLD_VIEW_REACTIVE;
@@ -65,6 +73,65 @@ void ResolvePlan::addPicture() {
     readResolved(output, false, true);
     output.numbers.push_back(StageNumber::view);
     attachWhole(output, depth ? nearestDepth_ : reactive_);
+  }
+}
+
+PlannedPass& ResolvePlan::addLook(const char* name, const char* file, int view) {
+  PlannedPass& pass = addShown(name, file, view, view);
+  pass.defines = resolveDefines(p_, false);
+  pass.numbers = {StageNumber::pictureSize};
+  return pass;
+}
+
+void ResolvePlan::readSums(PlannedPass& pass) const {
+  for (const PlacedPlane& plane : layers_)
+    if (isPacked(plane.spec.sum) || plane.spec.sum == PlaneSum::frontRadiance ||
+        plane.spec.sum == PlaneSum::frontDepth || plane.spec.sum == PlaneSum::sortedLight ||
+        plane.spec.sum == PlaneSum::sortedTransmission)
+      read(pass, plane.image, plane.spec.unit, plane.spec.name);
+  if (!solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solid");
+}
+
+PlannedPass& ResolvePlan::addListed(const char* name, const char* component, int view) {
+  PlannedPass& pass = addShown(name, "gl/output_listed_depth.frag", view, view);
+  pass.defines = {std::string("LISTED_DEPTH ") + component};
+  read(pass, listedDepths_[0].image, kMarksUnit, "layerDepths");
+  return pass;
+}
+
+void ResolvePlan::addDepths() {
+  if (meanDepth_ != PLD_NO_IMAGE && !listedDepths_.empty()) {
+    attachWhole(addListed("mean depth", "g", PLD_VIEW_MEAN_DEPTH), meanDepth_);
+  } else if (meanDepth_ != PLD_NO_IMAGE) {
+    PlannedPass& mean = addLook("mean depth", "gl/output_mean_depth.frag", PLD_VIEW_MEAN_DEPTH);
+    readSums(mean);
+    for (const PlacedPlane& plane : layers_)
+      if (plane.spec.sum == PlaneSum::nearestZ) read(mean, plane.image, plane.spec.unit, plane.spec.name);
+    attachWhole(mean, meanDepth_);
+  }
+  if (opacityDepth_ != PLD_NO_IMAGE)
+    attachWhole(addListed("opacity depth", "r", PLD_VIEW_OPACITY_DEPTH), opacityDepth_);
+}
+
+void ResolvePlan::addMarks() {
+  const auto readMarks = [&](PlannedPass& pass) {
+    read(pass, marks_[0].image, kMarksUnit, marks_[0].spec.name);
+    if (!solidMarks_.empty()) read(pass, solidMarks_[0].image, kSolidMarksUnit, solidMarks_[0].spec.name);
+  };
+  if (motion_ != PLD_NO_IMAGE) {
+    PlannedPass& motion = addLook("motion", "gl/output_motion.frag", PLD_VIEW_MOTION);
+    readSums(motion);
+    for (const PlacedPlane& plane : over_) read(motion, plane.image, plane.spec.unit, plane.spec.name);
+    readMarks(motion);
+    attachWhole(motion, motion_);
+  }
+  if (identity_ != PLD_NO_IMAGE) {
+    PlannedPass& identity = addShown("identity", "gl/output_identity.frag", PLD_VIEW_IDENTITY, PLD_VIEW_IDENTITY);
+    identity.defines = {marks_[0].spec.components() == 1 ? "IDENTITY r" : "IDENTITY a"};
+    if (solids_.empty()) identity.defines.emplace_back("NO_SOLIDS");
+    if (!solids_.empty()) read(identity, solids_[0].image, kSolidUnit, "solid");
+    readMarks(identity);
+    attachWhole(identity, identity_);
   }
 }
 

@@ -17,7 +17,7 @@ void PlanTextures::create(const RecipePlan& plan) {
   frames_.assign(plan.passes.size(), 0);
   for (const PlannedPass& pass : plan.passes)
     if (drawsToOwn(pass)) device_.makeFrame(frames_[indexOf(pass)]);
-  // Draws of the exact tier are followed by the pass that sums what they list.
+  // Draws of the exact tier are followed by a pass that reads what they list.
   for (std::size_t i = 0; i + 1 < frames_.size(); ++i)
     if (plan.passes[i].kind == PLD_PASS_DRAWS && plan.passes[i].attachments.empty()) frames_[i] = frames_[i + 1];
 }
@@ -61,12 +61,13 @@ bool PlanTextures::makeFrame(const PlannedPass& pass, GLuint frame) const {
 }
 
 GLuint PlanTextures::layersAt(int location) const {
+  GLuint found = 0;  // lists are summed last
   for (const PlannedPass& pass : plan_->passes) {
     if (pass.stage != PLD_STAGE_LAYERS || (pass.moment != Moment::draws && pass.moment != Moment::end)) continue;
     for (const pld_recipe_attachment& one : pass.attachments)
-      if (static_cast<int>(one.location) == location) return texture(one.image);
+      if (static_cast<int>(one.location) == location) found = texture(one.image);
   }
-  return 0;
+  return found;
 }
 
 bool PlanTextures::holds(GLuint texture) const {

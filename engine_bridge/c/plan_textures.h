@@ -20,7 +20,7 @@ class PlanTextures {
 
   // 0 for the host's and for none.
   GLuint texture(uint32_t image) const { return image < textures_.size() ? textures_[image] : 0; }
-  // Draws that list fragments have that of the pass which sums them; 0 where the host's target is drawn to.
+  // Draws that list fragments have that of a pass which reads them; 0 where the host's target is drawn to.
   GLuint frame(const PlannedPass& pass) const { return frames_[indexOf(pass)]; }
   std::size_t indexOf(const PlannedPass& pass) const { return static_cast<std::size_t>(&pass - plan_->passes.data()); }
   // Of the planes of PLD_STAGE_LAYERS; 0 for none.

@@ -212,6 +212,7 @@ pld_status pld_recipe_check(const pld_recipe* recipe, const pld_frame* frame, in
   pld_status status = judgeNumbers(judge, call, whole, kEveryField);
   if (status == PLD_OK) status = judgeFixed(judge, call, "pld_recipe_create()", whole);
   if (status == PLD_OK) status = judgeOcclusion(judge, call, whole);
+  if (status == PLD_OK) status = judgeOpacity(judge, call, whole);
   return status == PLD_OK ? judgeLow(judge, call, whole) : status;
 }
 

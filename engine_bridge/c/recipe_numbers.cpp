@@ -48,6 +48,8 @@ NumberShape shapeOf(StageNumber number) {
       return {"int", "rowLength", 4, 4};
     case StageNumber::weight:
       return {"vec4", "weight", 16, 16};
+    case StageNumber::depthOpacity:
+      return {"float", "depthOpacity", 4, 4};
     default:
       return {"int", "view", 4, 4};
   }
@@ -109,6 +111,8 @@ void fillNumber(const FrameNumbers& numbers, StageNumber number, uint32_t repeat
       return put<int32_t>(at, {numbers.width});
     case StageNumber::weight:
       return put<float>(at, {frame.weight_near, frame.weight_far, frame.weight_exponent, referenceOf(frame)});
+    case StageNumber::depthOpacity:
+      return put<float>(at, {frame.depth_opacity});
     case StageNumber::view:
       return put<int32_t>(at, {numbers.view});
     default:

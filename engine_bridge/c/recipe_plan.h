@@ -27,7 +27,8 @@ enum class StageNumber {
   spreadLevels,
   rowLength,
   weight,
-  view
+  view,
+  depthOpacity
 };
 
 // Of a frame: all of it, its texels of low resolution, the spread pyramid.
@@ -65,7 +66,7 @@ struct PlannedPass {
   uint32_t depthImage = PLD_NO_IMAGE;
   pld_compare compare = PLD_COMPARE_NONE;
   bool writesDepth = false;
-  int lists = 0;  // storage blocks
+  uint32_t lists = 0;  // storage blocks of stage_plan.h, bits
   bool emptiesLists = false;
 
   pld_stage stage = PLD_STAGE_LAYERS;  // of draws, and whose begin or end other passes belong to

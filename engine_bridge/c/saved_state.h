@@ -14,7 +14,7 @@ struct Units {
 };
 
 // A run of storage buffer bindings. None at all, and the generic binding is not touched either.
-constexpr int kMostStorage = 5;
+constexpr int kMostStorage = 6;
 struct Storage {
   int first = -1, count = 0;
 };

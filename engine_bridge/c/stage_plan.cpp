@@ -23,14 +23,9 @@ Permutation lowPermutation(const Permutation& permutation) {
   Permutation low = permutation;
   low.atLowResolution = true;
   low.method = PLD_METHOD_WEIGHTED;  // of one texel
-  low.features &= ~static_cast<uint32_t>(PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_OUTPUTS);
+  low.features &= ~static_cast<uint32_t>(PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_OUTPUTS |
+                                         PLD_FEATURE_DEPTHS | PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY);
   return low;
-}
-
-int listBlocks(const Permutation& p) {
-  if (!p.exact()) return 0;
-  const int layers = listBlocks(p, PLD_STAGE_LAYERS);
-  return p.rimsApart() ? std::max(layers, listBlocks(p, PLD_STAGE_RIMS)) : layers;
 }
 
 ListSizes listSizes(int width, int height, uint64_t fragments) {
@@ -38,13 +33,25 @@ ListSizes listSizes(int width, int height, uint64_t fragments) {
   return {4 * heads, 4 * (heads + fragments), 16 * fragments};
 }
 
+namespace {
+
+// All that the stage of the layers draws to.
+std::vector<PlaneSpec> blendedPlanes(const Permutation& p) {
+  std::vector<PlaneSpec> planes = planesOf(p);
+  if (p.exact()) return planes;
+  for (const PlaneSpec& plane : pellucid::planesOf(modelOf(p), PlaneStage::marks)) planes.push_back(plane);
+  return planes;
+}
+
+}  // namespace
+
 bool queryOf(const Permutation& p, pld_value what, uint64_t& value) {
   switch (what) {
     case PLD_VALUE_BITS_PER_PIXEL:
-      value = static_cast<uint64_t>(pellucid::bitsOf(planesOf(p)));
+      value = static_cast<uint64_t>(pellucid::bitsOf(blendedPlanes(p)));
       return true;
     case PLD_VALUE_PLANES:
-      value = planesOf(p).size();
+      value = blendedPlanes(p).size();
       return true;
     case PLD_VALUE_GEOMETRY_PASSES:
       value = 1u + (p.frontStage() ? 1u : 0u) + (p.has(PLD_FEATURE_SOLIDS) ? 1u : 0u) + (p.rimsApart() ? 1u : 0u);

@@ -14,8 +14,6 @@ pld_stage firstStageOf(const Permutation& permutation);
 // What a texel of PLD_STAGE_LOW keeps: nothing among its layers is solid or waits for its occlusion, and nearest depths
 // have a plane.
 Permutation lowPermutation(const Permutation& permutation);
-// How many storage blocks the lists of the exact tier take; 0 in other tiers.
-int listBlocks(const Permutation& permutation);
 // Bytes of the lists of the exact tier, for pictures up to a size with room for so many fragments.
 struct ListSizes {
   uint64_t heads, links, record;  // emptied before a stage, which begin the links; all of them; each other block

@@ -21,15 +21,22 @@ const PlannedPass* Views::passOf(pld_view view) const {
   return nullptr;
 }
 
+pld_status Views::failOutput(pld_view view) {
+  constexpr const char* features[] = {"PLD_FEATURE_OUTPUTS", "PLD_FEATURE_OUTPUTS", "PLD_FEATURE_DEPTHS",
+                                      "PLD_FEATURE_DEPTHS",  "PLD_FEATURE_MOTION",  "PLD_FEATURE_IDENTITY"};
+  if (view == PLD_VIEW_OPACITY_DEPTH && device_.permutation.has(PLD_FEATURE_DEPTHS))
+    return device_.fail(PLD_ERROR_UNSUPPORTED,
+                        "pld_resolve: PLD_VIEW_OPACITY_DEPTH: sums do not tell in which order opacity grows: expected "
+                        "PLD_TIER_EXACT, whose lists do, without PLD_FEATURE_LOW_RESOLUTION, whose layers are in none");
+  return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: view %d needs %s", static_cast<int>(view),
+                      features[view - PLD_VIEW_REACTIVE]);
+}
+
 pld_status Views::check(const pld_target& target, const pld_frame& frame) {
-  if (target.view < PLD_VIEW_PICTURE || target.view > PLD_VIEW_NEAREST_DEPTH)
+  if (target.view < PLD_VIEW_PICTURE || target.view > PLD_VIEW_IDENTITY)
     return device_.fail(PLD_ERROR_ARGUMENT, "pld_resolve: found view %d, which pld_view does not have",
                         static_cast<int>(target.view));
-  if (isOutput(target.view)) {
-    if (device_.permutation.outputs()) return PLD_OK;
-    return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: view %d needs PLD_FEATURE_OUTPUTS",
-                        static_cast<int>(target.view));
-  }
+  if (isOutput(target.view)) return passOf(target.view) ? PLD_OK : failOutput(target.view);
   if (target.view != PLD_VIEW_PICTURE && !(device_.info.flags & PLD_FLAG_DEBUG_VIEWS))
     return device_.fail(PLD_ERROR_UNSUPPORTED, "pld_resolve: views need PLD_FLAG_DEBUG_VIEWS");
   const bool rims = isOfRims(target.view);

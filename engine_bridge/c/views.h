@@ -24,6 +24,7 @@ class Views {
 
  private:
   const PlannedPass* passOf(pld_view view) const;
+  pld_status failOutput(pld_view view);
   void draw(const PlannedPass& pass, const pld_target& target);
 
   Device& device_;

@@ -11,6 +11,7 @@
 #include "gbuffer/errors.h"
 #include "gbuffer/shadow_maps.h"
 #include "shaders/mask.h"
+#include "shaders/piece.h"
 
 namespace pellucid {
 namespace {
@@ -58,6 +59,7 @@ struct RayFragments::Impl {
   Ray rayOf(int x, int y, const PassSettings& settings) const {
     return rays.through({x + settings.sample.x, y + settings.sample.y});
   }
+  std::uint32_t pieceAt(const Crossing& crossing, std::uint32_t identity, int x, int y) const;
   float alphaWidth(const Crossing& crossing, const Primitive& primitive, int x, int y, const SurfaceSampler& sampler,
                    const PassSettings& settings) const;
   std::optional<Fragment> shade(const Crossing& crossing, const Ray& ray, int x, int y, const SurfaceSampler& sampler,
@@ -90,6 +92,20 @@ float RayFragments::Impl::alphaWidth(const Crossing& crossing, const Primitive& 
       shading::texelsAcross(right0.texel - left0.texel, bottom0.texel - top0.texel, settings.footprint);
   const float width = settings.footprint * fwidth * shading::rimLeft(texels);
   return std::isfinite(width) ? width : kInfinity;
+}
+
+// Mirrors identityHere() of shaders/gl/piece.glsl.
+std::uint32_t RayFragments::Impl::pieceAt(const Crossing& crossing, std::uint32_t identity, int x, int y) const {
+  const Primitive& primitive = scene.primitives[static_cast<std::size_t>(scene.instances[crossing.instance].primitive)];
+  const Corners corners = cornersOf(primitive, traced.placed(crossing.instance).viewFromObject, crossing.triangle);
+  const auto shares = [&](double right, double down) {
+    const std::optional<TriangleHit> hit = intersectPlane(rays.through({x + 0.5 + right, y + 0.5 + down}), corners);
+    return hit ? glm::dvec2(hit->weight[1], hit->weight[2]) : glm::dvec2(0.0);
+  };
+  const glm::dvec2 at = shares(0.0, 0.0);
+  const glm::vec2 right(shares(1.0, 0.0) - at), down(shares(0.0, 1.0) - at);
+  return shading::pieceOf(identity, glm::vec2(at),
+                          {glm::length(glm::vec2(right.x, down.x)), glm::length(glm::vec2(right.y, down.y))});
 }
 
 // Mirrors main() of shaders/gl/transparent.frag.
@@ -141,6 +157,7 @@ std::optional<Fragment> RayFragments::Impl::shade(const Crossing& crossing, cons
   fragment.transmission = layer.transmission;
   fragment.z = layer.z;
   fragment.identity = shading::identityOf(instance.identity, crossing.triangle);
+  if (settings.pieces) fragment.identity = pieceAt(crossing, fragment.identity, x, y);
   return fragment;
 }
 

@@ -74,9 +74,12 @@ void BandWriter::write(Renderer& renderer, const Image<float>& count, const Wind
 
 void ListBuffer::atLeast(std::size_t wanted, GLuint binding, const char* what) {
   if (wanted > bytes_) {
-    glNamedBufferData(buffer_.name(), static_cast<GLsizeiptr>(wanted), nullptr, GL_STREAM_READ);
+    // With an eighth to spare: where the lists of every pass are a little longer than those of the one before, each
+    // would have new memory beside the old, which the device has not let go yet.
+    const std::size_t spare = std::min(wanted / 8, largestStorageBlock() - std::min(largestStorageBlock(), wanted));
+    glNamedBufferData(buffer_.name(), static_cast<GLsizeiptr>(wanted + spare), nullptr, GL_STREAM_READ);
     checkGl(what);
-    bytes_ = wanted;
+    bytes_ = wanted + spare;
   }
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.name());
 }
@@ -90,6 +93,26 @@ std::size_t largestStorageBlock() {
 std::size_t lightFragments(std::size_t triangles, std::size_t draws) {
   constexpr std::size_t kPerTriangle = 128, kPerDraw = 4096;  // a draw costs some microseconds, a fragment 40 ns
   return triangles * kPerTriangle + draws * kPerDraw;
+}
+
+namespace {
+
+// Records, or pixels, of a band: few, so that the device's copy and ours are small, but as many as take longer than
+// drawing the geometry once more.
+std::size_t bandSize(const GeometryStream& geometry) {
+  constexpr std::size_t kLeast = (std::size_t{16} << 20) / sizeof(Fragment), kPerTriangle = 16, kPerDraw = 512;
+  return std::max(kLeast, geometry.sceneTriangles() * kPerTriangle + geometry.sceneInstances() * kPerDraw);
+}
+
+}  // namespace
+
+std::vector<Window> rowsOf(const Window& window, std::size_t most) {
+  const auto fit = std::max<std::size_t>(most / static_cast<std::size_t>(std::max(window.width(), 1)), 1);
+  const int rows = static_cast<int>(std::min(fit, static_cast<std::size_t>(window.height())));
+  std::vector<Window> parts;
+  for (int y = window.y0; y < window.y1; y += rows)
+    parts.push_back({window.x0, y, window.x1, std::min(y + rows, window.y1)});
+  return parts;
 }
 
 std::size_t blockSize(const Renderer& renderer, std::size_t recordBytes) {
@@ -204,16 +227,19 @@ Image<glm::vec4> solidOf(const Image<glm::vec4>& solid, const Window& part, cons
 void listFragments(Renderer& renderer, std::size_t bytes,
                    const std::function<void(FragmentLists&, const Window&)>& band) {
   Image<float> count;
-  const std::vector<Window> windows = countedWindows(renderer, sizeof(Fragment), bytes, count);
+  const std::size_t most = bandSize(renderer.geometry());
+  const std::vector<Window> windows =
+      countedWindows(renderer, sizeof(Fragment), std::min(bytes, most * sizeof(Fragment)), count);
   const Image<glm::vec4> solid = drawnSolids(renderer);
   BandWriter writer;
   FragmentLists lists;
-  for (const Window& window : windows) {
-    requireListable(count, window, sizeof(Fragment));
-    writer.write(renderer, count, window, lists);
-    lists.solid = solidOf(solid, renderer.targets().part(), window);
-    band(lists, window);
-  }
+  for (const Window& all : windows)
+    for (const Window& window : rowsOf(all, most)) {
+      requireListable(count, window, sizeof(Fragment));
+      writer.write(renderer, count, window, lists);
+      lists.solid = solidOf(solid, renderer.targets().part(), window);
+      band(lists, window);
+    }
 }
 
 }  // namespace pellucid::gl

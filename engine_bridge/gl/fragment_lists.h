@@ -15,6 +15,9 @@ std::vector<Window> bandsOf(const Image<float>& count, const Window& area, std::
 // one tile.
 std::vector<Window> blocksOf(const Image<float>& count, const Window& window, int edge, std::size_t most);
 
+// Cuts `window` into whole rows of at most `most` pixels together, or one row each.
+std::vector<Window> rowsOf(const Window& window, std::size_t most);
+
 // Draws the count of fragments per pixel and cuts the super-tile into windows: tiles as the settings want them, such
 // that each window's records fit `bytes` or are of one pixel, and blocks that a cache holds where blockSize() says so.
 std::vector<Window> countedWindows(Renderer& renderer, std::size_t recordBytes, std::size_t bytes, Image<float>& count);

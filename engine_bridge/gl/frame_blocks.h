@@ -24,11 +24,12 @@ struct FrameBlock {
   glm::mat4 volumeFromView{1.0f};  // to texels of the light volume, centres at +0.5
   glm::ivec4 volumeTexels{1};      // of one light
   float weightReference = 1.0f;    // metres
-  float unused[3] = {};
+  float unused = 0.0f;
+  glm::vec2 toMiddle{0.0f};  // from the sample to the pixel's middle, pixels
 };
 static_assert(sizeof(FrameBlock) == 336);
 static_assert(offsetof(FrameBlock, weightNear) == 80 && offsetof(FrameBlock, bandX) == 96);
-static_assert(offsetof(FrameBlock, weightReference) == 320);
+static_assert(offsetof(FrameBlock, weightReference) == 320 && offsetof(FrameBlock, toMiddle) == 328);
 static_assert(offsetof(FrameBlock, lightCount) == 112 && offsetof(FrameBlock, viewport) == 120);
 
 // Storage binding of the first column of lists (gbuffer/fragments.h), the others after it; as in

@@ -157,14 +157,12 @@ std::vector<std::string> outputDefines(Output output, const FrameFeatures& frame
   }
   const bool winners = output == Output::coverToWin || output == Output::claim || output == Output::addWon;
   if (winners) defines.emplace_back("WINNERS");
-  if (winners || output == Output::cover || output == Output::add) {
-    if (frame.grey) defines.emplace_back("GREY");
-    defines.emplace_back("EXACT_COVERAGE");
-    if (frame.solids) defines.emplace_back("SOLIDS");
-    return defines;  // what scatters is summed apart
-  }
+  const bool samples = winners || output == Output::cover || output == Output::add;
+  if (samples && frame.grey) defines.emplace_back("GREY");
   defines.emplace_back("EXACT_COVERAGE");
+  if (frame.pieces && (samples || output == Output::list)) defines.emplace_back("PIECES");
   if (frame.solids) defines.emplace_back("SOLIDS");
+  if (samples) return defines;  // what scatters is summed apart
   const bool lists = output == Output::list || output == Output::leanList;
   if (frame.probes && (output == Output::count || lists)) defines.emplace_back("PROBES");
   if (output != Output::list) return defines;

@@ -39,6 +39,7 @@ struct FrameFeatures {
   bool occludes = false;                    // there are occluders for cut-out materials
   int rimForm = -1;                         // PLD_OCCLUSION_* of their rims; < 0 leaves rims open
   bool probes = false;                      // lists of some pixels alone
+  bool pieces = false;                      // identities name pieces of triangles
   bool lightVolume = false;                 // what of the lights reaches particles is known
   bool prune = true;                        // else every material gets the text of every phenomenon
 

@@ -105,8 +105,7 @@ void Renderer::over(const GBuffer& gbuffer, const Camera& camera) {
   gbuffer_ = &gbuffer;
   nearest_ = nearestOf(gbuffer);
   camera_ = camera;
-  opaqueZ_.reset();
-  opaqueZPart_ = {};
+  opaqueZIsOld_ = true;
 }
 
 void Renderer::classify() {
@@ -182,6 +181,7 @@ void Renderer::chooseFeatures(const PassSettings& settings) {
   const bool all = !settings.scatter.prune;
   features_.prune = settings.scatter.prune;
   features_.probes = settings.probeCell > 1;
+  features_.pieces = settings.pieces;
   features_.mask = settings.mask;
   features_.lights = lights_ > 0;
   features_.shadowRays = features_.lights && settings.shadowRays != nullptr;
@@ -273,10 +273,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   if (!targets_ || targets_->width() != superTile.width() || targets_->height() != superTile.height())
     targets_.emplace(superTile.width(), superTile.height());
   targets_->setPart(drawnPart());
-  if (!(opaqueZ_ && opaqueZPart_ == superTile)) {
-    opaqueZ_ = uploadPlane(gbuffer_->viewZ, superTile);
-    opaqueZPart_ = superTile;
-  }
+  uploadDepth(superTile);
 
   const Window& data = gbuffer_->data;
   const Window part{data.x0 + superTile.x0, data.y0 + superTile.y0, data.x0 + superTile.x1, data.y0 + superTile.y1};
@@ -299,6 +296,7 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   frame_.viewport = glm::vec2(superTile.width(), superTile.height());
   frame_.worldFromView = glm::mat4(glm::mat3(glm::transpose(glm::dmat3(camera_.viewFromWorld))));
   frame_.footprint = settings.footprint;
+  frame_.toMiddle = glm::vec2(0.5 - settings.sample);
   frame_.probeCell = settings.probeCell;
   frame_.originX = superTile.x0;
   frame_.originY = superTile.y0;
@@ -320,6 +318,17 @@ void Renderer::prepare(const Window& superTile, const PassSettings& settings, st
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lightBuffer_.name());
   if (features_.occludes) uploadOccluders(superTile);
   checkGl("beginning the transparent pass");
+}
+
+void Renderer::uploadDepth(const Window& superTile) {
+  const bool fits =
+      opaqueZ_ && opaqueZPart_.width() == superTile.width() && opaqueZPart_.height() == superTile.height();
+  if (!fits)
+    opaqueZ_ = uploadPlane(gbuffer_->viewZ, superTile);
+  else if (opaqueZIsOld_ || opaqueZPart_ != superTile)
+    updatePlane(opaqueZ_, gbuffer_->viewZ, superTile);
+  opaqueZPart_ = superTile;
+  opaqueZIsOld_ = false;
 }
 
 void Renderer::uploadSurroundings() {
@@ -350,6 +359,7 @@ void Renderer::uploadShadows() {
 void Renderer::traceShadows(const Window& superTile) {
   const FrameFeatures whole = features_;
   features_.lights = features_.shadowRays = features_.surroundings = features_.environment = false;
+  features_.pieces = false;  // surfaces ask for light by their triangle
   features_.solids = false;  // they are lit as well, and what they hide is not known yet
   scatterNothing(features_);
   features_.occludes = false;

@@ -103,6 +103,7 @@ class Renderer {
 
   void chooseFeatures(const PassSettings& settings);
   void prepare(const Window& superTile, const PassSettings& settings, std::size_t geometryBytes);
+  void uploadDepth(const Window& superTile);
   void uploadOccluders(const Window& superTile);
 
   PassSettings settings_;
@@ -120,6 +121,7 @@ class Renderer {
   bool tracing_ = false;                              // only what shadow rays are traced for is drawn
   Window areaOf(const PassSettings& settings) const;  // in pixels of the data window
   Window opaqueZPart_, occludersPart_;
+  bool opaqueZIsOld_ = false;  // opaqueZ_ holds the depth of another picture
   Window superTile_;
   std::shared_ptr<const OccluderPlanes> uploadedOccluders_;
 };

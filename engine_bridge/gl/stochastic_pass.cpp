@@ -18,7 +18,7 @@ using namespace gl;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kDepthSteps = 65536.0f;          // shaders/gl/stochastic_cover.glsl
 constexpr std::size_t kSampleBytes = 64u << 20;  // of a band's samples; GL 4.5 promises storage blocks of 16 MiB
-constexpr GLuint kRankUnit = 13, kReachUnit = 14, kDepthsUnit = 15;
+constexpr GLuint kRankUnit = 16, kReachUnit = 14, kDepthsUnit = 15;
 
 // Mirrors shaders/gl/stochastic_frame.glsl.
 struct StochasticFrameBlock {
@@ -256,7 +256,7 @@ StochasticPlanes StochasticPass::sample(const PassSettings& settings, const Stoc
     const StochasticFrameBlock frame{
         {static_cast<std::uint32_t>(samples.samples), static_cast<std::uint32_t>(samples.first),
          static_cast<std::uint32_t>(samples.step), count},
-        {samples.seed, samples.stratified ? 1u : 0u, samples.winnersOnly ? 1u : 0u, 0u},
+        {samples.seed, samples.stratified ? 1u : 0u, samples.winnersOnly ? 1u : 0u, settings.pieces ? 1u : 0u},
         {data.x0 + part.x0, data.y0 + part.y0, 0, 0}};
     glNamedBufferData(self.frame.name(), sizeof frame, &frame, GL_DYNAMIC_DRAW);
     glBindBufferBase(GL_UNIFORM_BUFFER, 3, self.frame.name());

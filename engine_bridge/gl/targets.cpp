@@ -131,16 +131,20 @@ Image<float> Targets::readCount() const {
 
 namespace {
 
-Texture uploadTexels(const float* texels, GLenum stored, GLenum format, int width, int height, int rowLength) {
-  Texture texture = Texture::make();
-  glTextureStorage2D(texture.name(), 1, stored, width, height);
+void putTexels(const Texture& texture, const float* texels, GLenum format, int width, int height, int rowLength) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, rowLength);
   glTextureSubImage2D(texture.name(), 0, 0, 0, width, height, format, GL_FLOAT, texels);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  checkGl("uploading a plane of the opaque picture");
+}
+
+Texture uploadTexels(const float* texels, GLenum stored, GLenum format, int width, int height, int rowLength) {
+  Texture texture = Texture::make();
+  glTextureStorage2D(texture.name(), 1, stored, width, height);
+  putTexels(texture, texels, format, width, height, rowLength);
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  checkGl("uploading a plane of the opaque picture");
   return texture;
 }
 
@@ -148,6 +152,10 @@ Texture uploadTexels(const float* texels, GLenum stored, GLenum format, int widt
 
 Texture uploadPlane(const Image<float>& plane, const Window& part) {
   return uploadTexels(&plane.at(part.x0, part.y0), GL_R32F, GL_RED, part.width(), part.height(), plane.width());
+}
+
+void updatePlane(const Texture& texture, const Image<float>& plane, const Window& part) {
+  putTexels(texture, &plane.at(part.x0, part.y0), GL_RED, part.width(), part.height(), plane.width());
 }
 
 Texture uploadPlanes(const Image<float>& red, const Image<float>& green, const Window& part) {

@@ -48,6 +48,8 @@ class Targets {
 
 // `part` (in pixels of the plane) as an R32F texture that is read texel by texel.
 Texture uploadPlane(const Image<float>& plane, const Window& part);
+// Puts it into a texture that uploadPlane() has made of a part of the same size.
+void updatePlane(const Texture& texture, const Image<float>& plane, const Window& part);
 // The same of two planes, as RG32F.
 Texture uploadPlanes(const Image<float>& red, const Image<float>& green, const Window& part);
 

@@ -65,6 +65,9 @@ struct ViewSettings {
 
 // What a fragment's colour, coverage and scattering are computed from.
 struct ShadingSettings {
+  // Identities of lists and stochastic samples name the piece of the triangle, about a pixel large, that lies in the
+  // pixel's middle, instead of the triangle: shaders/shared/piece.glsl.
+  bool pieces = false;
   TextureFilter filter = TextureFilter::mipmap;
   MaskEdge mask = MaskEdge::smooth;
   LayerChoice layers = LayerChoice::all;

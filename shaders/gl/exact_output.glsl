@@ -1,6 +1,11 @@
 #pragma once
 // Appends one layer to its pixel's list. The sums are made of the lists when the stage ends: gl/exact_fold.frag.
 #include "gl/exact_lists.glsl"
+#ifdef PLD_MARKS
+#ifdef LISTS_MARKS
+#include "gl/listed_marks.glsl"
+#endif
+#endif
 
 // What stands behind the opaque must not be written down.
 layout(early_fragment_tests) in;
@@ -22,6 +27,11 @@ void appendLayer(Layer layer, vec4 offset, vec4 dispersion, uint rowLength) {
 #endif
 #ifdef DISPERSION
   pldDispersions[place] = dispersion;
+#endif
+#ifdef PLD_MARKS
+#ifdef LISTS_MARKS
+  pldMarks[place] = seamMarks;
+#endif
 #endif
   pldLinks[linkOf(place)] = atomicExchange(pldLinks[headHere(rowLength)], place + 1u);
 }

@@ -47,7 +47,7 @@ void main() {
   settings.rangeNear = weightNear;
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
-  settings.reference = weightReference.x;
+  settings.reference = weightReference;
   precise vec2 at = pixelRay.xy + pixelRay.zw * vec2(pixel);
   FogSums fog = marchFog(medium, spanOfPixel(medium, at, choices.y, z), settings, choices.x);
   if (!fogShows(fog)) discard;

@@ -19,7 +19,9 @@ layout(std140, binding = 0) uniform Frame {
   ivec2 origin;          // of the pass's pixel 0, 0 in the data window
   mat4 volumeOfParticles;  // view space to texels of the light volume, centres at +0.5
   ivec4 texelsOfParticles; // of one light
-  vec4 weightReference;    // metres; unused
+  float weightReference;   // metres
+  float unused;
+  vec2 toMiddle;           // from the sample to the pixel's middle, pixels
 };
 
 // Row 0 is the top row: the pass sets the clip origin to the upper left.

@@ -3,7 +3,7 @@
 // after. Records are pairs of words: LeanFragment of gbuffer/lean_lists.h where LEAN, else Fragment of
 // gbuffer/fragments.h.
 #include "gl/frame.glsl"
-#include "gl/identity.glsl"
+#include "gl/piece.glsl"
 #include "gl/scattered.glsl"
 
 #ifdef LEAN
@@ -40,7 +40,7 @@ void appendFragment(Layer layer, Scattered here, ivec2 pixel) {
   storePair(first + 3u, vec2(layer.transmission.b, layer.z));
 #ifndef LEAN
   storePair(first + 4u, here.scatter.offset);
-  storePair(first + 5u, uvec2(floatBitsToUint(here.scatter.variance), identityOf(instanceIdentity, triangleNumber)));
+  storePair(first + 5u, uvec2(floatBitsToUint(here.scatter.variance), identityHere()));
 #endif
   storeColumns(place, here);
 }

@@ -26,7 +26,7 @@ void main() {
   settings.rangeNear = weightNear;
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
-  settings.reference = weightReference.x;
+  settings.reference = weightReference;
   writeSums(layer, settings);
 #ifdef SCATTER
   Scattered here = withColumns(scattersNothing(), place);

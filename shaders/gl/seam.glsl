@@ -7,6 +7,9 @@
 #if defined(STAGE_RIMS) || defined(RIMS_HERE)
 #include "shared/occlusion.glsl"
 #endif
+#ifdef PLD_MARKS
+vec4 seamMarks = vec4(0.0f);  // motion, unused, identity
+#endif
 #if defined(EXACT)
 #include "gl/exact_output.glsl"
 #elif defined(STAGE_SOLIDS) || defined(STAGE_FRONT)
@@ -91,6 +94,14 @@ float seamSolidZ = seamTexel(pldSolid).a;
 #ifdef FRONT_TAIL
 float seamFrontZ = seamTexel(pldFrontZ).r;
 #endif
+#ifdef PLD_MARKS
+#if defined(NEAREST_HERE) && !defined(FRONT_TAIL)
+float seamFrontZ = seamTexel(pldFrontZ).r;
+#endif
+#endif
+#endif
+#ifdef PLD_MARKS
+#include "gl/seam_marks.glsl"
 #endif
 
 // One shaded transparent surface under this fragment.
@@ -105,6 +116,10 @@ struct PldSurface {
   vec2 etaRedBlue;     // of red and blue, with dispersion; a component that is not > 0 is as eta
   float thickness;     // scene units, along the normal, >= 0; PLD_REFRACT_THROUGH_SLAB alone reads it
   float collimation;   // [0,1]: 1 clear, 0 scatters all
+#ifdef PLD_MARKS
+  vec2 motion;    // pixels from where the point is seen to where it was seen in the last frame, y down, without jitter
+  uint identity;  // of the object, at most 16777215; 0 for none
+#endif
 };
 
 PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 position) {
@@ -118,6 +133,10 @@ PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 pos
   surface.etaRedBlue = vec2(0.0f);
   surface.thickness = 0.0f;
   surface.collimation = 1.0f;
+#ifdef PLD_MARKS
+  surface.motion = vec2(0.0f);
+  surface.identity = 0u;
+#endif
   return surface;
 }
 
@@ -171,6 +190,11 @@ void seamWrite(Layer layer, vec2 offset, float variance, vec4 dispersion) {
   clampToHalf();
 #endif
 #endif
+#ifdef PLD_MARKS
+#ifdef MARKS_HERE
+  writeMarks(layer);
+#endif
+#endif
 }
 #endif
 
@@ -192,6 +216,9 @@ void pldWriteLayer(vec3 radiance, float coverage, vec3 transmission, float z, ve
 #else
   solidRadiance = vec4(layer.radiance, z);
   gl_FragDepth = 1e-7f / z;
+#ifdef PLD_MARKS
+  solidMarks = vec4(seamMarks.xy, 1.0f, seamMarks.w);
+#endif
 #endif
 #else
 #ifdef SOLIDS
@@ -268,6 +295,9 @@ void pldWriteFragment(PldSurface surface) {
   vec3 transmission = clamp(surface.transmission, vec3(0.0f), vec3(1.0f));
   variance = layerVariance(settings, clamp(surface.coverage, 0.0f, 1.0f), transmission,
                            clamp(surface.collimation, 0.0f, 1.0f), z, seamBackdropZ());
+#endif
+#ifdef PLD_MARKS
+  pldMark(surface.motion, surface.identity);
 #endif
   pldWriteLayer(surface.radiance * EXPOSURE, surface.coverage, surface.transmission, z, offset, variance, dispersion);
 }

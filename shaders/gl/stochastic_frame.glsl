@@ -5,7 +5,7 @@
 
 layout(std140, binding = 3) uniform StochasticFrame {
   uvec4 samples;  // S of a pixel; first and step of those of this pass; how many they are
-  uvec4 choice;   // seed; 1 stratified; 1 for winners alone; unused
+  uvec4 choice;   // seed; 1 stratified; 1 for winners alone; 1 where identities are pieces
   ivec4 origin;   // display coordinates of the targets' top left pixel
 } stochastic;
 
@@ -14,7 +14,7 @@ layout(std430, binding = 3) buffer SampleDepths { uint sampleDepths[]; };
 #ifdef WINNERS
 layout(std430, binding = 4) buffer SampleOwners { uint sampleOwners[]; };
 #endif
-layout(binding = 13) uniform usamplerBuffer maskRanks;
+layout(binding = 16) uniform usamplerBuffer maskRanks;  // 13 is the light of particles, of another type
 
 #ifdef GREY
 const int kSampleChannels = 1;
@@ -30,7 +30,8 @@ struct Coin {
 Coin coinAt(ivec2 pixel, uint identity) {
   Coin coin;
   coin.identity = identity;
-  coin.key = coinKeyOf(uvec2(pixel + stochastic.origin.xy), identity, stochastic.choice.x);
+  uvec2 where = stochastic.choice.w == 0u ? uvec2(pixel + stochastic.origin.xy) : uvec2(0u);
+  coin.key = coinKeyOf(where, identity, stochastic.choice.x);
   ivec2 inBand = pixel - band.xy;
   coin.place = (inBand.y * band.z + inBand.x) * kSampleChannels * int(stochastic.samples.w);
   return coin;

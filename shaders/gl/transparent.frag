@@ -10,6 +10,7 @@
 #include "gl/exact_cut.glsl"
 #include "gl/contact_depth.glsl"
 #include "gl/identity.glsl"
+#include "gl/piece.glsl"
 // Here, where no #if leaves them out: a text is included once.
 #include "shared/diffusion.glsl"
 #include "shared/resolve.glsl"
@@ -127,7 +128,7 @@ void writeHere(Layer layer, Surface surface, Reflected reflected, vec2 gradient,
   settings.rangeNear = weightNear;
   settings.rangeFar = weightFar;
   settings.exponent = weightExponent;
-  settings.reference = weightReference.x;
+  settings.reference = weightReference;
 #endif
 #if defined(OUTPUT_LIST) || defined(OUTPUT_PUBLISHED)
   Scattered here = scattersNothing();
@@ -153,11 +154,11 @@ void writeHere(Layer layer, Surface surface, Reflected reflected, vec2 gradient,
 #elif defined(OUTPUT_COUNT)
   fragmentCount = 1.0f;
 #elif defined(OUTPUT_COVER)
-  coverSamples(layer, identityOf(instanceIdentity, triangleNumber), pixel);
+  coverSamples(layer, identityHere(), pixel);
 #elif defined(OUTPUT_CLAIM)
-  claimSamples(layer, identityOf(instanceIdentity, triangleNumber), pixel);
+  claimSamples(layer, identityHere(), pixel);
 #elif defined(OUTPUT_ADD)
-  addVisible(layer, identityOf(instanceIdentity, triangleNumber), pixel);
+  addVisible(layer, identityHere(), pixel);
 #elif defined(OUTPUT_LIST)
   appendFragment(layer, here, pixel);
 #endif

@@ -5,7 +5,7 @@
 
 const uint PLD_COIN_ONE = 16777216u;  // probabilities in 24 bits: a float in [0,1] keeps all its bits above 2^-24
 
-// One fragment's random numbers in one pixel. The identity belongs to the geometry, so the noise stays with it.
+// One fragment's random numbers in one pixel; of a piece (shared/piece.glsl) always in pixel 0: its noise goes along.
 PLD_FN uint coinKeyOf(uvec2 pixel, uint identity, uint seed) {
   return hashOf(identity ^ hashOf(pixel.x ^ hashOf(pixel.y ^ hashOf(seed))));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -12,6 +13,7 @@
 #include "composite/over.h"
 #include "composite/resolve.h"
 #include "tests/support/layers.h"
+#include "tests/support/random.h"
 
 namespace pellucid {
 namespace {
@@ -186,6 +188,39 @@ TEST(Veil, MeanOfSamples) {
   EXPECT_EQ(veil.transmission.at(0, 0), glm::vec3(0.75f));
   EXPECT_EQ(veil.frontZ.at(0, 0), 3);
   EXPECT_EQ(veil.touched.at(0, 0), 1);
+}
+
+TEST(Veil, RowsAddUpToTheBitsOfWholeSamples) {
+  Random random(71);
+  VeilMean whole, rows;
+  for (int pass = 0; pass < 4; ++pass) {
+    Veil veil(5, 7);
+    veil.place = {3, 2};
+    if (pass % 2 == 1) veil.addScatter();
+    for (std::size_t i = 0; i < veil.touched.size(); ++i) {
+      veil.touched[i] = static_cast<std::uint8_t>(random.below(2));
+      veil.light[i] = glm::vec3(random.uniformf(), -0.0f, random.uniformf());
+      veil.transmission[i] = glm::vec3(random.uniformf());
+      veil.frontZ[i] = 1.0f + random.uniformf();
+      if (!veil.scatters()) continue;
+      veil.direct[i] = glm::vec3(random.uniformf());
+      veil.applied[i] = glm::vec4(random.uniformf());
+    }
+    whole.add(veil);
+    rows.begin(veil);
+    for (int y = 0; y < 7; y += 3) rows.addRows(rowsOf(veil, y, std::min(y + 3, 7)));
+  }
+  const Veil expected = whole.finish(), found = rows.finish();
+  const auto same = [](const auto& a, const auto& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+  };
+  EXPECT_EQ(found.place, expected.place);
+  EXPECT_TRUE(same(found.light, expected.light));
+  EXPECT_TRUE(same(found.transmission, expected.transmission));
+  EXPECT_TRUE(same(found.frontZ, expected.frontZ));
+  EXPECT_TRUE(same(found.touched, expected.touched));
+  EXPECT_TRUE(same(found.direct, expected.direct));
+  EXPECT_TRUE(same(found.applied, expected.applied));
 }
 
 TEST(Error, Statistics) {

@@ -11,6 +11,8 @@
 namespace pellucid::test {
 namespace {
 
+constexpr uint32_t kTold = PLD_FEATURE_DEPTHS | PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY;
+
 // A host's shader with names that the model's text uses too.
 const char* const kHostShader = R"(
 struct Layer { vec4 layer; };
@@ -31,6 +33,10 @@ void main() {
   surface.eta = 1.0 / 1.5;
   surface.etaRedBlue = vec2(1.0 / 1.49, 1.0 / 1.51);
   surface.collimation = 0.5;
+#ifdef PLD_MARKS
+  surface.motion = viewPosition.xy;
+  surface.identity = 7u;
+#endif
   pldWriteFragment(surface);
 }
 )";
@@ -78,7 +84,11 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
       {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, 0},
       {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT | PLD_FEATURE_SOLIDS},
       {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, all | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
-      {PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0}};
+      {PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0},
+      {PLD_METHOD_WEIGHTED, PLD_TIER_HALF, kTold | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION},
+      {PLD_METHOD_FRONT_TAIL, PLD_TIER_FLOAT, PLD_FEATURE_IDENTITY | PLD_FEATURE_COLOURED},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, all | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION | kTold},
+      {PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_SOLIDS | kTold}};
   int compiled = 0, skipped = 0;
   for (const Case& one : cases)
     for (const pld_depth depth : {PLD_DEPTH_DEVICE, PLD_DEPTH_LINEAR}) {
@@ -97,13 +107,13 @@ TEST(BridgeGlsl, EveryPermutationCompilesAsEveryVersion) {
         for (const int version : {330, 400, 410, 420, 430, 440, 450, 460}) {
           const char* seam = nullptr;
           const pld_status status = pld_glsl(pass, stage, version, &seam);
-          const bool has =
-              stage == PLD_STAGE_LAYERS ||
-              (stage == PLD_STAGE_FRONT && one.method == PLD_METHOD_FRONT_TAIL && one.tier != PLD_TIER_EXACT) ||
-              (stage == PLD_STAGE_LOW && (one.features & PLD_FEATURE_LOW_RESOLUTION)) ||
-              (stage == PLD_STAGE_RIMS && (one.features & PLD_FEATURE_RIMS) && one.method != PLD_METHOD_FRONT_TAIL &&
-               one.tier != PLD_TIER_PUBLISHED) ||
-              (stage == PLD_STAGE_SOLIDS && (one.features & PLD_FEATURE_SOLIDS));
+          const bool has = stage == PLD_STAGE_LAYERS ||
+                           (stage == PLD_STAGE_FRONT && one.tier != PLD_TIER_EXACT &&
+                            (one.method == PLD_METHOD_FRONT_TAIL || (one.features & PLD_FEATURE_IDENTITY))) ||
+                           (stage == PLD_STAGE_LOW && (one.features & PLD_FEATURE_LOW_RESOLUTION)) ||
+                           (stage == PLD_STAGE_RIMS && (one.features & PLD_FEATURE_RIMS) &&
+                            one.method != PLD_METHOD_FRONT_TAIL && one.tier != PLD_TIER_PUBLISHED) ||
+                           (stage == PLD_STAGE_SOLIDS && (one.features & PLD_FEATURE_SOLIDS));
           const bool late = one.tier == PLD_TIER_EXACT && version < 430;
           ASSERT_EQ(status, !has ? PLD_ERROR_ARGUMENT : late ? PLD_ERROR_UNSUPPORTED : PLD_OK);
           if (!has || late) continue;
@@ -151,7 +161,10 @@ TEST(BridgeGlsl, TheTextsGiveNoWarnings) {
                                                  {PLD_TIER_FLOAT, PLD_FEATURE_RIMS},
                                                  {PLD_TIER_HALF, PLD_FEATURE_RIMS | PLD_FEATURE_COLOURED},
                                                  {PLD_TIER_PUBLISHED, PLD_FEATURE_RIMS | PLD_FEATURE_REFRACTION},
-                                                 {PLD_TIER_EXACT, all}};
+                                                 {PLD_TIER_EXACT, all},
+                                                 {PLD_TIER_FLOAT, PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | kTold},
+                                                 {PLD_TIER_HALF, PLD_FEATURE_MOTION},
+                                                 {PLD_TIER_EXACT, all | kTold}};
   int compiled = 0;
   for (const auto& [tier, features] : kinds) {
     pld_create_info info = host.info();
@@ -160,7 +173,7 @@ TEST(BridgeGlsl, TheTextsGiveNoWarnings) {
     info.fragments_per_pixel = 4.0f;
     pld_pass* pass = host.create(info);
     ASSERT_NE(pass, nullptr);
-    for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW})
+    for (const pld_stage stage : {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW})
       for (const int version : {330, 450}) {
         const char* seam = nullptr;
         if (pld_glsl(pass, stage, version, &seam) != PLD_OK) continue;

@@ -128,6 +128,7 @@ pld_frame Host::frame() const {
   frame.refract_distance = 2.0f;
   frame.diffusion_k0 = 0.3f;
   frame.diffusion_k1 = 0.5f;
+  frame.depth_opacity = opacity;
   return frame;
 }
 
@@ -165,6 +166,10 @@ std::vector<float> Host::finish(pld_pass* pass) {
   return picture();
 }
 
+ToldMarks marksOf(std::uint32_t identity) {
+  return {{static_cast<float>(identity % 97u) - 40.0f, 0.25f * static_cast<float>(identity % 13u)}, 7u * identity + 1u};
+}
+
 void replay(pld_pass* pass, const FragmentLists& lists, const pld_frame& frame, const std::vector<pld_stage>& stages) {
   static const std::string kMain = R"(
 struct FragmentRecord {
@@ -182,6 +187,9 @@ void main() {
   if (place >= offsets[at.y * wide + at.x + 1]) discard;
   FragmentRecord one = fragments[place];
   vec4 dispersion = disperses ? dispersions[place] : vec4(0.0);
+#ifdef PLD_MARKS
+  pldMark(vec2(float(one.identity % 97u) - 40.0, 0.25 * float(one.identity % 13u)), 7u * one.identity + 1u);
+#endif
   pldWriteLayer(one.radiance, one.coverage, one.transmission, one.z, one.offset, one.variance, dispersion);
 }
 )";

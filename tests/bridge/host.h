@@ -2,6 +2,7 @@
 #pragma once
 #include <epoxy/gl.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,16 @@ class Host {
 
   int width, height;
   GLuint colour, depth, output, occlusion;
+  float opacity = 0.5f;  // pld_frame.depth_opacity
   mutable Log log;
 };
+
+// What a replayed fragment tells of itself, by its Fragment::identity: motion in pixels, and identity.
+struct ToldMarks {
+  float motion[2];
+  std::uint32_t identity;
+};
+ToldMarks marksOf(std::uint32_t identity);
 
 // Blends the lists, fragment by fragment in their order, as a host's shader with the seam does. Stages and resolve
 // included.

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
+#include <utility>
 
 #include "tests/bridge/recipe_host.h"
 #include "tests/support/recipes.h"
@@ -34,7 +36,11 @@ std::string mainOf(pld_stage stage) {
          "  s.normal = normalize(vec3(0.2 * sin(p.x), 0.1, 1.0));\n"
          "  s.eta = 1.0 / 1.4;\n"
          "  s.etaRedBlue = vec2(1.0 / 1.38, 1.0 / 1.43);\n"
-         "  s.collimation = 0.7;\n" +
+         "  s.collimation = 0.7;\n"
+         "#ifdef PLD_MARKS\n"
+         "  s.motion = vec2(p.x - 20.0, 3.0 * turns);\n"
+         "  s.identity = 100u * uint(turn) + uint(p.y);\n"
+         "#endif\n" +
          (stage == PLD_STAGE_RIMS ? "  pldWriteRim(s, vec3(0.1, 0.15, 0.2), vec2(0.1, 0.05));\n}\n"
                                   : "  pldWriteFragment(s);\n}\n");
 }
@@ -77,7 +83,21 @@ pld_frame frameOf(const Host& host, pld_depth kind) {
   return frame;
 }
 
-std::vector<float> drawnByThePass(Host& host, const Kind& kind, const pld_recipe& recipe) {
+// The roles of recipes that are outputs, and their views.
+constexpr std::pair<pld_role, pld_view> kOutputs[] = {
+    {PLD_ROLE_REACTIVE, PLD_VIEW_REACTIVE},     {PLD_ROLE_NEAREST_DEPTH, PLD_VIEW_NEAREST_DEPTH},
+    {PLD_ROLE_MEAN_DEPTH, PLD_VIEW_MEAN_DEPTH}, {PLD_ROLE_OPACITY_DEPTH, PLD_VIEW_OPACITY_DEPTH},
+    {PLD_ROLE_MOTION, PLD_VIEW_MOTION},         {PLD_ROLE_IDENTITY, PLD_VIEW_IDENTITY}};
+
+bool has(const pld_recipe& recipe, pld_role role) {
+  for (uint32_t i = 0; i < pld_recipe_image_count(&recipe); ++i)
+    if (pld_recipe_image_at(&recipe, i)->role == role) return true;
+  return false;
+}
+
+//   outputs  by role, of those that the recipe has
+std::vector<float> drawnByThePass(Host& host, const Kind& kind, const pld_recipe& recipe,
+                                  std::map<pld_role, std::vector<float>>& outputs) {
   pld_create_info info = host.info();
   info.method = kind.method;
   info.tier = kind.tier;
@@ -105,6 +125,12 @@ std::vector<float> drawnByThePass(Host& host, const Kind& kind, const pld_recipe
     glDeleteProgram(program);
   }
   glDeleteVertexArrays(1, &array);
+  for (const auto& [role, view] : kOutputs) {
+    pld_target target = host.target();
+    target.view = view;
+    EXPECT_EQ(pld_resolve(pass, &target) == PLD_OK, has(recipe, role)) << pld_message(pass);
+    if (has(recipe, role)) outputs[role] = host.picture();
+  }
   return host.finish(pass);
 }
 
@@ -119,10 +145,32 @@ int changedPixels(const Host& host, const pld_frame& frame, const std::vector<fl
   return changed;
 }
 
+std::size_t differingWords(const std::vector<float>& a, const std::vector<float>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    differing += std::memcmp(&a[i], &b[i], sizeof(float)) != 0;
+  return differing;
+}
+
+// Outside of it the recipe's images hold nothing yet.
+std::size_t differingInFrame(const pld_frame& frame, const std::vector<float>& a, const std::vector<float>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  std::vector<float> inA, inB;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    const auto pixel = static_cast<int>(i / 4);
+    if (pixel % kWidth >= frame.width || pixel / kWidth >= frame.height) continue;
+    inA.push_back(a[i]);
+    inB.push_back(b[i]);
+  }
+  return differingWords(inA, inB);
+}
+
 TEST(BridgeRecipeFrames, AHostThatRunsTheRecipeHasTheBitsOfThePass) {
   constexpr uint32_t colours = PLD_FEATURE_COLOURED | PLD_FEATURE_LIGHT;
   constexpr uint32_t scatters = PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | PLD_FEATURE_DISPERSION;
   constexpr uint32_t parts = PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION;
+  constexpr uint32_t told = PLD_FEATURE_DEPTHS | PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY;
   const Kind kinds[] = {
       {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, colours | scatters | parts | PLD_FEATURE_OUTPUTS},
       {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT, colours | scatters | PLD_FEATURE_SOLIDS, PLD_DEPTH_REVERSED},
@@ -131,7 +179,12 @@ TEST(BridgeRecipeFrames, AHostThatRunsTheRecipeHasTheBitsOfThePass) {
       {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_PUBLISHED, PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION},
       {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, colours | scatters | parts},
       {PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, PLD_FEATURE_SOLIDS, PLD_DEPTH_REVERSED},
-      {PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_SOLIDS | PLD_FEATURE_OUTPUTS}};
+      {PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_SOLIDS | PLD_FEATURE_OUTPUTS},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_FLOAT,
+       PLD_FEATURE_COLOURED | PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION | parts | told},
+      {PLD_METHOD_FRONT_TAIL, PLD_TIER_HALF, PLD_FEATURE_SOLIDS | told, PLD_DEPTH_REVERSED},
+      {PLD_METHOD_PHENOMENOLOGICAL, PLD_TIER_EXACT, colours | scatters | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | told},
+      {PLD_METHOD_OVER, PLD_TIER_EXACT, told, PLD_DEPTH_REVERSED}};
   GlContext context;
   for (const Kind& kind : kinds) {
     pld_recipe_info info = pld_recipe_info_init(PLD_DIALECT_GL, 450);
@@ -148,16 +201,17 @@ TEST(BridgeRecipeFrames, AHostThatRunsTheRecipeHasTheBitsOfThePass) {
     ASSERT_TRUE(recipe) << why;
     Host host(kWidth, kHeight);
     fill(host, kind.depth);
-    const std::vector<float> empty = host.picture(), expected = drawnByThePass(host, kind, *recipe);
+    std::map<pld_role, std::vector<float>> outputs;
+    const std::vector<float> empty = host.picture(), expected = drawnByThePass(host, kind, *recipe, outputs);
     ASSERT_EQ(expected.size(), empty.size()) << nameOf(info);
     EXPECT_GT(changedPixels(host, frameOf(host, kind.depth), expected), 500) << nameOf(info);
     fillTexture(host.output, kWidth, kHeight, GL_RGBA, empty.data());
     RecipeHost runner(*recipe, host, mainOf);
     runner.run(frameOf(host, kind.depth), [](pld_stage, GLuint program) { drawSheets(program); });
     const std::vector<float> picture = host.picture();
-    std::size_t differing = 0;
-    for (std::size_t i = 0; i < picture.size(); ++i)
-      differing += std::memcmp(&picture[i], &expected[i], sizeof(float)) != 0;
+    std::size_t differing = differingWords(picture, expected);
+    for (const auto& [role, output] : outputs)
+      differing += differingInFrame(frameOf(host, kind.depth), output, runner.output(role));
     std::printf("%s, depth %d: %zu of %zu words differ\n", nameOf(info).c_str(), static_cast<int>(kind.depth),
                 differing, picture.size());
     EXPECT_EQ(differing, 0u);

@@ -182,4 +182,11 @@ void RecipeHost::run(const pld_frame& frame, const std::function<void(pld_stage,
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
+std::vector<float> RecipeHost::output(pld_role role) const {
+  for (uint32_t i = 0; i < images_.size(); ++i)
+    if (pld_recipe_image_at(&recipe_, i)->role == role)
+      return readTexture(images_[i].texture, host_.width, host_.height, GL_RGBA);
+  return {};
+}
+
 }  // namespace pellucid::test

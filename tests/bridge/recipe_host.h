@@ -21,6 +21,8 @@ class RecipeHost {
   // Runs all passes; the picture is in the host's output.
   //   draw  with the program in use, over the whole viewport
   void run(const pld_frame& frame, const std::function<void(pld_stage, GLuint program)>& draw);
+  // Of the image of one of the roles behind PLD_ROLE_PICTURE, in four channels; empty where the recipe has none.
+  std::vector<float> output(pld_role role) const;
 
  private:
   struct Image {

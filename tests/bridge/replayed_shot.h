@@ -102,7 +102,8 @@ inline pld_pass* drawnBy(Host& host, const Shot& shot, const Wanted& wanted, pld
   if (!pass) return nullptr;
   std::vector<pld_stage> stages;
   if (wanted.solids) stages.push_back(PLD_STAGE_SOLIDS);
-  if (method == PLD_METHOD_FRONT_TAIL && tier != PLD_TIER_EXACT) stages.push_back(PLD_STAGE_FRONT);
+  if ((method == PLD_METHOD_FRONT_TAIL || (more & PLD_FEATURE_IDENTITY)) && tier != PLD_TIER_EXACT)
+    stages.push_back(PLD_STAGE_FRONT);
   stages.push_back(PLD_STAGE_LAYERS);
   replay(pass, shot.lists, host.frame(), stages);
   return pass;

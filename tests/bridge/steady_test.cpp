@@ -95,6 +95,8 @@ bool makes(const std::string& name) {
   return false;
 }
 
+constexpr uint32_t kTold = PLD_FEATURE_DEPTHS | PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY;
+
 TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
   struct Kind {
     const char* what;
@@ -123,7 +125,17 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
            PLD_FEATURE_DISPERSION | PLD_FEATURE_SOLIDS | PLD_FEATURE_RIMS | PLD_FEATURE_LOW_RESOLUTION,
        {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS, PLD_STAGE_RIMS, PLD_STAGE_LOW}},
       {"exact, front+tail", PLD_METHOD_FRONT_TAIL, PLD_TIER_EXACT, 0, {PLD_STAGE_LAYERS}},
-      {"exact, over", PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_OUTPUTS, {PLD_STAGE_LAYERS}}};
+      {"exact, over", PLD_METHOD_OVER, PLD_TIER_EXACT, PLD_FEATURE_OUTPUTS, {PLD_STAGE_LAYERS}},
+      {"float, told",
+       PLD_METHOD_WEIGHTED,
+       PLD_TIER_FLOAT,
+       kTold | PLD_FEATURE_SOLIDS,
+       {PLD_STAGE_SOLIDS, PLD_STAGE_FRONT, PLD_STAGE_LAYERS}},
+      {"exact, told",
+       PLD_METHOD_WEIGHTED,
+       PLD_TIER_EXACT,
+       kTold | PLD_FEATURE_SOLIDS,
+       {PLD_STAGE_SOLIDS, PLD_STAGE_LAYERS}}};
   GlContext context;
   Host host(48, 32);
   for (const Kind& kind : kinds) {
@@ -154,6 +166,7 @@ TEST(BridgeSteady, NothingIsAllocatedAndNoObjectIsMadeAfterResize) {
     std::vector<pld_view> views{PLD_VIEW_WEIGHT, PLD_VIEW_SHADOW_TRANSMISSION, PLD_VIEW_SHADOW_DEPTH};
     if (std::count(kind.stages.begin(), kind.stages.end(), PLD_STAGE_RIMS)) views.push_back(PLD_VIEW_RIM_LOSS);
     if (kind.features & PLD_FEATURE_LOW_RESOLUTION) views.push_back(PLD_VIEW_LOW_COLOUR);
+    if (kind.features & kTold) views.insert(views.end(), {PLD_VIEW_MEAN_DEPTH, PLD_VIEW_MOTION, PLD_VIEW_IDENTITY});
     uint64_t value = 0;
     for (int number = 0; number < 20; ++number) {
       pld_frame frame = host.frame();

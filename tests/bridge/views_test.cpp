@@ -260,7 +260,8 @@ TEST(BridgeViews, WrongViewsAreRefused) {
   refused(PLD_VIEW_LOW_COLOUR, PLD_ERROR_UNSUPPORTED);
   refused(PLD_VIEW_LOW_DEPTH, PLD_ERROR_UNSUPPORTED);
   refused(PLD_VIEW_REACTIVE, PLD_ERROR_UNSUPPORTED);
-  refused(PLD_VIEW_NEAREST_DEPTH + 1, PLD_ERROR_ARGUMENT);
+  refused(PLD_VIEW_IDENTITY, PLD_ERROR_UNSUPPORTED);
+  refused(PLD_VIEW_IDENTITY + 1, PLD_ERROR_ARGUMENT);
   refused(-1, PLD_ERROR_ARGUMENT);
   const pld_shadow_info room = shadowInfo(PLD_SHADOW_NAIVE, 32, 1, 2, false);
   ASSERT_EQ(pld_shadow_resize(pass, &room), PLD_OK);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -49,6 +50,24 @@ TEST(BridgeWrapper, AFrameIsDrawnFromInitialisedStructs) {
   pld::Pass other(std::move(pass));
   EXPECT_TRUE(other);
   EXPECT_FALSE(pass);  // NOLINT: what it is after the move is the matter
+}
+
+TEST(BridgeWrapper, WhatLayersTellGoesIntoTextures) {
+  GlContext context;
+  Host host(24, 16);
+  pld_create_info info = infoOf(host);
+  info.features = PLD_FEATURE_DEPTHS;
+  pld::Pass pass(info);
+  pass.resize(24, 16);
+  pass.stage(PLD_STAGE_LAYERS, frameOf(host), [] {});
+  pass.resolve(PLD_VIEW_MEAN_DEPTH, host.output);
+  EXPECT_TRUE(std::isinf(host.picture()[0]));
+  try {
+    pass.resolve(PLD_VIEW_MOTION, host.output);
+    ADD_FAILURE() << "motion was not asked for";
+  } catch (const pld::Error& error) {
+    EXPECT_EQ(error.status(), PLD_ERROR_UNSUPPORTED);
+  }
 }
 
 TEST(BridgeWrapper, WhatFailsIsThrownWithItsSentence) {

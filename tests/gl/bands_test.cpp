@@ -55,6 +55,14 @@ TEST(Bands, CoverEveryPixelOnceWithinTheLimit) {
   }
 }
 
+TEST(Bands, RowsOfFewPixels) {
+  const std::vector<Window> expected = {{1, 2, 11, 4}, {1, 4, 11, 6}, {1, 6, 11, 7}};
+  EXPECT_EQ(gl::rowsOf({1, 2, 11, 7}, 29), expected);
+  EXPECT_EQ(gl::rowsOf({1, 2, 11, 7}, 3).size(), 5u);
+  EXPECT_EQ(gl::rowsOf({1, 2, 11, 7}, 1000), (std::vector<Window>{{1, 2, 11, 7}}));
+  EXPECT_TRUE(gl::rowsOf({1, 2, 11, 2}, 3).empty());
+}
+
 TEST(Bands, BlocksAreTilesThatShareALimit) {
   const Image<float> count(10, 6, 1.0f);
   const std::vector<Window> blocks = gl::blocksOf(count, {1, 0, 10, 6}, 4, 28);

@@ -49,6 +49,8 @@ TEST(Pictures, ThoseThatWereWrongAreRight) {
            Trial{"shapes", 916308},      // a round thing three pixels wide between two others was taken for several
            Trial{"refracting", 916419},  // the same, between a crease and its limb
            Trial{"refracting", 917875},  // the same, across a corner of the picture
+           Trial{"lamps", 923999},       // the same, four pixels wide, over its nearest point
+           Trial{"shapes", 923822},      // a corner at the border of the picture went on in what is behind it
        })
     expectRight(trial, runTrial(trial, folder, kept), folder);
 }

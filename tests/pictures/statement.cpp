@@ -27,6 +27,7 @@ constexpr int kFewPasses = 4;   // may all see what few places see
 // 0.7 for 1.
 constexpr double kMostTexels = 0.7;
 constexpr int kMostPlaces = 150;  // of those that would show it
+constexpr int kAcross = 3;        // places in each pixel at which meshes are looked at
 constexpr int kNear = 5;          // pixels within which another face may touch the slope of this one
 
 }  // namespace
@@ -84,6 +85,7 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
   if (anySolids_) {
     anywhere_.take(Vec4(0.0));
     anywhere_.take(Vec4(1.0));
+    takeSolids();
   }
   for (std::size_t i = 0; i < beauty.size(); ++i) anywhere_.take(Vec4(beauty[i]));
   // A corner comes to the eye through one product of floats: as far as the mesh's origin lies from the eye, and the
@@ -96,6 +98,19 @@ Statements::Statements(const DrawnScene& scene, const reference::Picture& pictur
     for (const reference::Corner& corner : picture.scene().meshes[i].corners)
       rounding_ = std::max(rounding_, 0x1p-22 * (away + glm::length(corner.at - Vec3(world[3]))));
   }
+}
+
+// What bent rays may land on: all light of meshes that hide everything, lamps' highlights included.
+void Statements::takeSolids() {
+  if (!picture_.anyBends()) return;
+  for (int y = 0; y < kAcross * centres_.height(); ++y)
+    for (int x = 0; x < kAcross * centres_.width(); ++x)
+      for (const reference::Crossing& crossing :
+           picture_.columnAt((x + 0.5) / kAcross, (y + 0.5) / kAcross).crossings) {
+        if (!reference::hidesAll(crossing.layer)) continue;
+        const auto &shows = crossing.layer.reflected, &glows = crossing.layer.additive;
+        anywhere_.take(Vec4(shows[0] + glows[0], shows[1] + glows[1], shows[2] + glows[2], 1.0));
+      }
 }
 
 Vec4 Statements::colourOf(const Face& face) const {

@@ -58,6 +58,7 @@ class Statements {
     bool onPlane = true;                 // the pixels beside it tell the slope of its face
     double beside = 0.0;                 // relative: how far another face beside it may lead its slope astray
   };
+  void takeSolids();
   Surroundings surroundingsOf(int x, int y) const;
   reference::Vec4 valueOf(const reference::Shown& shown, const reference::Vec4& behind) const;
   // What is seen behind the layers: by straight rays `behind`, by bent ones what the picture shows elsewhere.

@@ -80,7 +80,9 @@ void Statements::eachCut(const Column& column, const Face& face, double nearest,
 
 void Statements::eachPartly(const Column& more, const Column& fewer,
                             const std::function<void(const Column&)>& take) const {
-  for (double part = 0.02; part < 0.99; part += 0.02) {  // stripes lie between
+  // However little of it bends all that is behind, and stripes lie between.
+  for (int step = 0; step <= 50; ++step) {
+    const double part = std::clamp(0.02 * step, 1e-4, 1.0 - 1e-4);
     Column partly = more;
     bool any = false;
     for (reference::Crossing& crossing : partly.crossings) {

@@ -42,9 +42,9 @@ Vec2 placeOf(const Mesh& mesh, const std::array<int, 3>& triangle, const Vec3& s
 }
 
 Vec4 colourOf(const PictureScene& scene, const Mesh& mesh, const std::array<int, 3>& triangle, const Vec3& shares) {
-  Vec4 colour(0.0);
-  for (int k = 0; k < 3; ++k)
-    colour += shares[k] * mesh.corners[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])].colour;
+  const auto at = [&](std::size_t k) { return mesh.corners[static_cast<std::size_t>(triangle[k])].colour; };
+  // What all corners have is just that, and what is opaque hides everything.
+  Vec4 colour = at(0) + shares[1] * (at(1) - at(0)) + shares[2] * (at(2) - at(0));
   const Coat& coat = mesh.coat;
   colour *= coat.colour;
   if (coat.texture >= 0)

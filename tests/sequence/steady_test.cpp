@@ -70,6 +70,7 @@ TEST_F(Steady, AStaticShotOfTwentyFrames) {
       {"--method", "phenomenological", "--precision", "exact"},
       {"--method", "phenomenological", "--weight", "auto"},
       {"--method", "stochastic", "--samples", "4"},
+      {"--method", "stochastic", "--samples", "4", "--noise", "object"},
   };
   for (const std::vector<std::string>& method : methods) {
     const nlohmann::json rows = flickerOf(method);

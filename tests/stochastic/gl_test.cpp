@@ -5,45 +5,13 @@
 #include <cstdio>
 #include <cstring>
 
-#include "engine_bridge/gl/stochastic_pass.h"
-#include "tests/gl/builder.h"
 #include "tests/stochastic/examples.h"
+#include "tests/stochastic/sampled_stage.h"
 
 namespace pellucid {
 namespace {
 
 using namespace test;
-
-StochasticPassSettings passOf(const StochasticSettings& settings) {
-  StochasticPassSettings pass;
-  pass.samples = settings.samples;
-  pass.stratified = settings.stratified;
-  pass.winnersOnly = settings.variant != Variant::depth;
-  pass.seed = settings.seed;
-  return pass;
-}
-
-StochasticSums sumsAt(const StochasticPlanes& planes, int x, int y) {
-  StochasticSums sums;
-  sums.light = planes.light.at(x, y);
-  sums.unit = planes.unit.at(x, y);
-  sums.added = planes.added.at(x, y);
-  sums.empty = planes.empty.at(x, y);
-  sums.beta = planes.beta.at(x, y);
-  return sums;
-}
-
-glm::dvec3 pictureOf(const StochasticSums& sums, const glm::dvec3& behind, const StochasticSettings& settings) {
-  const glm::dvec3 shows = correctsBackground(settings) ? sums.beta : sums.empty;
-  return stochasticLight(sums, glm::dvec3(1.0) - sums.beta, settings) + shows * behind;
-}
-
-StochasticPlanes sampleStage(const Stage& stage, const StochasticPassSettings& samples,
-                             const PassSettings& settings = {}) {
-  GlContext context;
-  StochasticPass pass(context, stage.scene, stage.gbuffer, stage.camera);
-  return pass.sample(settings, samples);
-}
 
 // The noise belongs to the pixel too: one frame of 200 x 200 pixels is 40,000 draws.
 TEST(StochasticGl, ExamplesMatchEnumerationWithinThreeStandardErrors) {
@@ -87,32 +55,6 @@ TEST(StochasticGl, ExamplesMatchEnumerationWithinThreeStandardErrors) {
       EXPECT_NEAR(second[i], variance, 3 * error + 2e-5) << row.label << c;
     }
   }
-}
-
-// Glass, smoke, a flame, coincident panes and a solid leaf.
-Stage mixture() {
-  Stage stage(48, 40);
-  Material pane;
-  pane.doubleSided = true;
-  pane.metallic = 0;
-  pane.transmission = 1;
-  pane.ior = 1;
-  pane.unlit = true;
-  pane.baseColor = {.9f, .5f, .1f, 1};
-  const int glass = stage.add(pane);
-  Material flame = unlitBlend({3, 1, .2f}, .5f);
-  flame.additive = true;
-  const int fire = stage.add(flame), smoke = stage.add(unlitBlend({.6f, .6f, .7f}, .3f)),
-            thin = stage.add(unlitBlend({1, 1, 1}, .003f)), leaf = stage.add(unlitBlend({.1f, .5f, .1f}, 1));
-  stage.quad(2, 2, 40, 30, 2, glass);
-  stage.quad(10, 5, 46, 38, 3, smoke);
-  stage.quad(5, 12, 30, 36, 3, smoke);  // at the same depth
-  stage.slanted(0, 8, 48, 33, 1.5, 4, smoke);
-  stage.quad(20, 0, 47, 22, 2.5, fire);
-  stage.quad(0, 0, 48, 40, 1.2, thin);
-  stage.quad(28, 20, 40, 40, 3.5, leaf);
-  stage.quad(0, 0, 48, 40, 5, glass);
-  return stage;
 }
 
 TEST(StochasticGl, AgreesWithTheCpuOnEveryPixel) {

@@ -75,6 +75,53 @@ TEST_F(StochasticVerb, GlDrawsWhatTheCpuSamples) {
   }
 }
 
+// Their light is a texture beside the table of masks.
+TEST_F(StochasticVerb, GlDrawsParticlesUnderLamps) {
+  RunOptions generator = options;
+  generator.program = "pellucid_samples";
+  ASSERT_EQ(runProgram({".", "sparks", "90"}, generator).code, 0);
+  for (const char* noise : {"screen", "object"}) {
+    for (const char* where : {"cpu", "gl"}) {
+      const Ended ended =
+          runProgram({"composite", "sparks.exr", "sparks.glb", "-o", std::string(where) + ".exr", "--method",
+                      "stochastic", "--aa", "1", "--samples", "16", "--sampled-on", where, "--noise", noise},
+                     options);
+      ASSERT_EQ(ended.code, 0) << ended.err;
+    }
+    const double apart = meanError(readOpaque(folder + "/cpu.exr", {}).gbuffer.beauty,
+                                   readOpaque(folder + "/gl.exr", {}).gbuffer.beauty);
+    EXPECT_LT(apart, 1e-5) << noise;
+  }
+}
+
+TEST_F(StochasticVerb, NoiseOnTheObject) {
+  const std::vector<std::string> how{"--method", "stochastic:alpha", "--aa", "4", "--seed", "7", "--noise", "object"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), how.begin(), how.end());
+    return composite(more);
+  };
+  const auto one = with({}), other = with({"--order", "shuffle:3", "--budget", "64K", "--threads", "1"}),
+             gl = with({"--sampled-on", "gl"});
+  const auto screen = composite({"--method", "stochastic:alpha", "--aa", "4", "--seed", "7"});
+  const auto truth = composite({"--method", "over", "--aa", "4"});
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    ASSERT_EQ(one[i], other[i]) << i;
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(one[i][c], gl[i][c], 1e-4) << i;
+  }
+  EXPECT_GT(meanError(one, screen), 1e-4) << "other noise";
+  std::printf("mean error %.5f on the screen, %.5f on the object\n", meanError(screen, truth), meanError(one, truth));
+  EXPECT_LT(meanError(one, truth), 1.3 * meanError(screen, truth)) << "as much of it";
+}
+
+// Fog is no object: its noise stays with the pixels, instead of being one mask for all of them.
+TEST_F(StochasticVerb, NoiseOfFogBelongsToPixels) {
+  const auto foggy = composite(
+      {"--method", "stochastic:basic", "--samples", "4", "--aa", "1", "--noise", "object", "--fog", "density=.05"});
+  int changes = 0;
+  for (int x = 1; x < 32; ++x) changes += foggy.at(x, 0) != foggy.at(x - 1, 0) ? 1 : 0;
+  EXPECT_GT(changes, 3) << "one mask for all changes twice at most along a row, where rays are longer";
+}
+
 TEST_F(StochasticVerb, EveryVariantTendsToTheTruth) {
   const auto truth = composite({"--method", "over", "--aa", "4"});
   for (const std::vector<std::string>& how : {std::vector<std::string>{"stochastic:basic"},
@@ -100,6 +147,7 @@ TEST_F(StochasticVerb, FlagsThatItCannotHonourAreErrors) {
   refused({"--method", "stochastic:alpha", "--correction", "off"}, "always corrected");
   refused({"--method", "stochastic:fancy"}, "stochastic[:basic|alpha|depth]");
   refused({"--method", "over", "--seed", "3"}, "draws no random numbers");
+  refused({"--method", "over", "--noise", "object"}, "draws no random numbers");
   refused({"--method", "over", "--sampled-on", "gl"}, "draws no random numbers");
   refused({"--samples", "8"}, "draws no random numbers");
   refused({"--method", "stochastic", "--weight", "eq7"}, "its layers are not weighed");

@@ -1,6 +1,13 @@
 #include "tests/support/recipes.h"
 
 namespace pellucid::test {
+namespace {
+
+// What later passes may ask besides, each alone and all together.
+constexpr uint32_t kTold[] = {0, PLD_FEATURE_DEPTHS, PLD_FEATURE_MOTION, PLD_FEATURE_IDENTITY,
+                              PLD_FEATURE_DEPTHS | PLD_FEATURE_MOTION | PLD_FEATURE_IDENTITY};
+
+}  // namespace
 
 RecipePointer makeRecipe(pld_recipe_info info, std::string* why) {
   char message[400] = {};
@@ -17,17 +24,18 @@ int forEachRecipe(const pld_recipe_info& like,
   int count = 0;
   for (int method = PLD_METHOD_PHENOMENOLOGICAL; method <= PLD_METHOD_OVER; ++method)
     for (int tier = PLD_TIER_FLOAT; tier <= PLD_TIER_EXACT; ++tier)
-      for (uint32_t features = 0; features < 2u * PLD_FEATURE_OUTPUTS; ++features) {
-        pld_recipe_info info = like;
-        info.method = static_cast<pld_method>(method);
-        info.tier = static_cast<pld_tier>(tier);
-        info.features = features;
-        info.depth = PLD_DEPTH_REVERSED;
-        const RecipePointer recipe = makeRecipe(info);
-        if (!recipe) continue;
-        found(info, *recipe);
-        ++count;
-      }
+      for (uint32_t features = 0; features < 2u * PLD_FEATURE_OUTPUTS; ++features)
+        for (const uint32_t told : kTold) {
+          pld_recipe_info info = like;
+          info.method = static_cast<pld_method>(method);
+          info.tier = static_cast<pld_tier>(tier);
+          info.features = features | told;
+          info.depth = PLD_DEPTH_REVERSED;
+          const RecipePointer recipe = makeRecipe(info);
+          if (!recipe) continue;
+          found(info, *recipe);
+          ++count;
+        }
   return count;
 }
 

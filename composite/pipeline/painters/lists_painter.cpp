@@ -31,6 +31,11 @@ class ListsPainter : public Painter {
     return context_.journal.time(mixer_->takesLean() ? "lists and sort" : "lists and method",
                                  [&] { return painted(sample, pass); });
   }
+  bool showsLater() const override { return lookups_ != nullptr; }
+  void showBackground(Veil& rows) override {
+    const int top = rows.place.y - (area_.y0 - context_.picture.gbuffer->data.y0);
+    context_.journal.time("background", [&] { showThrough(*lookups_, rows, top); });
+  }
   bool settled() override { return mixer_->settled(); }
   void finish(Veil& mean) override { mixer_->finish(mean); }
 
@@ -39,6 +44,7 @@ class ListsPainter : public Painter {
     const GBuffer& gbuffer = *context_.picture.gbuffer;
     const Plan& plan = context_.plan;
     area_ = areaOf(sample, gbuffer.data);
+    lookups_.reset();
     Veil veil(area_, gbuffer.data);
     if (leanWillDo(sample)) {
       context_.sources.triangles()->leanFragments(sample,
@@ -63,8 +69,9 @@ class ListsPainter : public Painter {
       statistics.passes += lowStatistics.passes;
       context_.counts.add(statistics);
     }
+    low_.reset();
     mixer_->endPass(planes_);
-    if (planes_.scatters() && (!planesStay() || anyScatters_)) showBackground(veil);
+    if (planes_.scatters() && (!planesStay() || anyScatters_)) prepareBackground(veil);
     return veil;
   }
 
@@ -141,15 +148,15 @@ class ListsPainter : public Painter {
     addHeldOut(lists.window, heldOut, row, *context_.picture.deepOpaque, mixed.scatter, veil, lookedUp_);
   }
 
-  void showBackground(Veil& veil) {
+  // Of a flat picture the lookups alone are made ready: what all of its pixels show takes as much memory as the veil.
+  void prepareBackground(Veil& veil) {
     const GBuffer& picture = *context_.picture.centres;
     const glm::ivec2 place(planes_.data.x0 - picture.data.x0, planes_.data.y0 - picture.data.y0);
-    const Lookups lookups(backdrops_.of(picture, planes_.solid, place), planes_, context_.plan.lookup, place,
-                          context_.picture.edges);
-    if (context_.plan.heldOut)
-      showThroughHeldOut(lookups, lookedUp_, veil);
-    else
-      showThrough(lookups, veil);
+    lookups_ = std::make_unique<Lookups>(backdrops_.of(picture, planes_.solid, place), planes_, context_.plan.lookup,
+                                         place, context_.picture.edges);
+    if (!context_.plan.heldOut) return;
+    showThroughHeldOut(*lookups_, lookedUp_, veil);
+    lookups_.reset();
   }
 
   PaintContext context_;
@@ -160,7 +167,8 @@ class ListsPainter : public Painter {
   OitPlanes planes_;                             // what scatters
   FragmentLists shown_;                          // of a window, where it is not shown as it is listed
   PassBackdrop backdrops_;
-  Image<glm::vec3> lookedUp_;  // with a deep picture behind
+  std::unique_ptr<Lookups> lookups_;  // of planes_ and backdrops_
+  Image<glm::vec3> lookedUp_;         // with a deep picture behind
   std::optional<LowResolutionFragments> low_;
 };
 

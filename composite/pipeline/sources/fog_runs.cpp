@@ -11,8 +11,12 @@ class FogRuns : public LayerSource {
   bool runsBetween() const override { return true; }
   ListSink into(const SourceView& view, ListSink next) override {
     if (!view.settings.fog) return next;
-    return [&fog = *view.settings.fog, &picture = view.picture, sample = view.settings.sample, next = std::move(next)](
-               const FragmentLists& lists) { next(withFog(fog, *picture.gbuffer, sample, lists, picture.deepOpaque)); };
+    return [&view, next = std::move(next)](const FragmentLists& lists) {
+      const PassSettings& settings = view.settings;
+      FragmentLists joined =
+          withFog(*settings.fog, *view.picture.gbuffer, settings.sample, lists, view.picture.deepOpaque);
+      next(settings.pieces ? tiedToPixels(lists, std::move(joined)) : joined);
+    };
   }
 };
 

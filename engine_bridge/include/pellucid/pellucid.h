@@ -26,7 +26,8 @@
        which is implied for hosts of before. 0.5: PLD_FLAG_VALIDATE, pld_create_info.message; what \
        could be misused in silence is refused, and to hosts of before said as a warning.           \
        0.6: pld_frame.weight_reference. 0.7: PLD_METHOD_OVER, PLD_FEATURE_OUTPUTS,                 \
-       PLD_FLAG_TRUST_TEXTURES. 0.9: recipe.h.                                                     \
+       PLD_FLAG_TRUST_TEXTURES. 0.9: recipe.h. 0.14: PLD_FEATURE_DEPTHS, _MOTION and _IDENTITY,    \
+       pld_frame.depth_opacity.                                                                    \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -118,6 +119,18 @@ typedef PLD_ENUM(pld_feature){
     ,
     PLD_FEATURE_OUTPUTS = 256 /* what later passes ask of the layers: PLD_VIEW_REACTIVE and PLD_VIEW_NEAREST_DEPTH, for
                                  which a plane keeps the depth of the nearest layer. Not in the published tier */
+    ,
+    PLD_FEATURE_DEPTHS = 512,   /* PLD_VIEW_MEAN_DEPTH and, in PLD_TIER_EXACT without PLD_FEATURE_LOW_RESOLUTION,
+                                   PLD_VIEW_OPACITY_DEPTH, which only lists can tell. Takes the planes of
+                                   PLD_FEATURE_OUTPUTS, in the exact tier another of 64 bits and a sort of each list.
+                                   Not in the published tier, nor with PLD_METHOD_FRONT_TAIL and
+                                   PLD_FEATURE_LOW_RESOLUTION together */
+    PLD_FEATURE_MOTION = 1024,  /* PLD_VIEW_MOTION, from PldSurface.motion: a plane of 128 bits, with PLD_FEATURE_SOLIDS
+                                   another. Not in the published tier. Where features fill all eight targets
+                                   pld_create() says which may go; the exact tier has room for all */
+    PLD_FEATURE_IDENTITY = 2048 /* PLD_VIEW_IDENTITY, from PldSurface.identity: in the plane of motion, or 32 bits of
+                                   its own. PLD_STAGE_FRONT is drawn first, but in the exact tier. Not in the
+                                   published tier */
 } pld_feature;
 
 /* Diagnostics, for pld_create_info.flags. */
@@ -181,11 +194,12 @@ typedef struct pld_create_info {
                                 with PLD_FEATURE_RIMS in the published tier or with PLD_METHOD_FRONT_TAIL */
   float fragments_per_pixel; /* PLD_TIER_EXACT: room for this many on the average of pld_resize()'s picture, in each
                                 stage; > 0, at most 65536. 36 bytes each, 52 with refraction, diffusion or (not under
-                                PLD_METHOD_FRONT_TAIL) rims, 68 with dispersion. Where more come,
-                                pld_end() returns PLD_ERROR_MEMORY */
+                                PLD_METHOD_FRONT_TAIL) rims, 68 with dispersion; 16 more with motion or
+                                identity. Where more come, pld_end() returns PLD_ERROR_MEMORY */
   uint32_t storage_binding;  /* PLD_TIER_EXACT: the first of three shader storage bindings, four with refraction,
                                 diffusion or (not under PLD_METHOD_FRONT_TAIL) rims, five with dispersion, that the seam
-                                writes to while stages are drawn. 0.3 ended before fragments_per_pixel */
+                                writes to while stages are drawn; one more with motion or identity. 0.3 ended before
+                                fragments_per_pixel */
   char* message;             /* null, or room for message_size bytes: where pld_create() says why it fails, since there
                                 is no pass yet that pld_message() could be asked of; "" where it does not */
   size_t message_size;       /* 0.4 ended before message */
@@ -230,6 +244,8 @@ typedef struct pld_frame {
                              is the same for any, as long as weights stay in 2^-86 to 2^40 (in halves 2^-24 to 2^16):
                              a power then is the same picture in any unit. Eqs. 7 to 9: the unit of their constants. 0:
                              1 m, as hosts of before have it. 0.5 ended before weight_reference */
+  float depth_opacity;    /* 0 to 1. PLD_VIEW_OPACITY_DEPTH: how much is hidden where that depth is; 0.5. 0.13 ended
+                             before depth_opacity */
 } pld_frame;
 
 /* Fields of pld_frame that no frame changes. */
@@ -246,7 +262,8 @@ typedef PLD_ENUM(pld_fixed){
 
 typedef PLD_ENUM(pld_stage){
     PLD_STAGE_SOLIDS = 0, /* with PLD_FEATURE_SOLIDS: the same geometry, the nearest fragment that hides everything */
-    PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL: the same geometry, its nearest depth; not in the exact tier */
+    PLD_STAGE_FRONT = 1,  /* with PLD_METHOD_FRONT_TAIL or PLD_FEATURE_IDENTITY: the same geometry, its nearest depth;
+                             not in the exact tier */
     PLD_STAGE_LAYERS = 2, /* all transparent geometry, in any order */
     PLD_STAGE_RIMS = 3,   /* with PLD_FEATURE_RIMS, but for the published tier and PLD_METHOD_FRONT_TAIL: the cut-out
                              geometry of   the layers, by pldWriteRim() */
@@ -286,7 +303,25 @@ typedef PLD_ENUM(pld_view){
     PLD_VIEW_REACTIVE =
         18, /* 1 - beta, the mean of its channels: what part of a pixel is not the opaque picture's, as
                temporal antialiasing and upscalers ask. Light that adds and hides nothing is not in it */
-    PLD_VIEW_NEAREST_DEPTH = 19 /* planar metres of the nearest layer, +inf where none is */
+    PLD_VIEW_NEAREST_DEPTH = 19, /* planar metres of the nearest layer, +inf where none is */
+    /* Likewise, with PLD_FEATURE_DEPTHS. Solids are layers of opacity 1. */
+    PLD_VIEW_MEAN_DEPTH = 20, /* planar metres: the mean of the layers, each by its opacity (the mean over the channels
+                                 to which it does not add light). Where all only add light, of the nearest; +inf
+                                 where none is. With PLD_METHOD_FRONT_TAIL, but in the exact tier, layers in one plane
+                                 with the nearest count as one, over all channels */
+    PLD_VIEW_OPACITY_DEPTH = 21, /* planar metres of the first layer from the eye with which all so far hide
+                                    pld_frame.depth_opacity of what is behind them, the mean of the channels; +inf
+                                    where all together do not. PLD_TIER_EXACT alone */
+    /* Likewise, with PLD_FEATURE_MOTION: */
+    PLD_VIEW_MOTION = 22, /* red, green: the mean of the layers' PldSurface.motion, each by its opacity as above: pixels
+                             of the frame, from where a point is seen to where it was seen in the last frame, x to the
+                             right and y down whatever pld_rows says; 0 where no layer hides anything. Alpha: 1 - beta,
+                             by which it may be laid over the opaque picture's motion. What is drawn in PLD_STAGE_LOW
+                             has none */
+    /* Likewise, with PLD_FEATURE_IDENTITY: */
+    PLD_VIEW_IDENTITY = 23 /* red: PldSurface.identity of the nearest layer, of several there the smallest; 0 where none
+                              is, or none was given. Whole numbers: a target of 32-bit floats keeps all of them. What is
+                              drawn in PLD_STAGE_LOW has none and hides none */
 } pld_view;
 
 typedef PLD_ENUM(pld_target_kind){PLD_TARGET_TEXTURE = 0, PLD_TARGET_FRAMEBUFFER = 1} pld_target_kind;
@@ -414,6 +449,10 @@ PLD_API pld_status pld_destroy(pld_pass** pass);
        vec2 etaRedBlue;      of red and blue, with dispersion; a component that is not > 0 is as eta
        float thickness;      scene units, along the normal, >= 0; for PLD_REFRACT_THROUGH_SLAB
        float collimation;    [0,1]: 1 clear, 0 scatters all
+     with PLD_FEATURE_MOTION or _IDENTITY, where the text defines PLD_MARKS, and set to 0 by pldSurface():
+       vec2 motion;          pixels of the frame, y down: where the point was seen in the last frame less where it
+                             is seen now, both without jitter. As FSR 2, DLSS and XeSS take it
+       uint identity;        of the object, at most 16777215; 0 for none
      };
      PldSurface pldSurface(vec3 radiance, float coverage, vec3 transmission, vec3 position);
          a surface that neither refracts nor diffuses: eta 1, etaRedBlue 0, thickness 0, collimation 1
@@ -424,6 +463,8 @@ PLD_API pld_status pld_destroy(pld_pass** pass);
          the same, for hosts that know what scattering does: radiance with its exposure, z planar metres,
          offset in pixels with y down, variance in pixels^2, dispersion: the offsets of red and of blue
          less `offset`
+     void pldMark(vec2 motion, uint identity);
+         with PLD_FEATURE_MOTION or _IDENTITY, before pldWriteLayer(): what PldSurface has of these
 
    and with PLD_FEATURE_RIMS
 
@@ -497,6 +538,7 @@ static inline pld_frame pld_frame_init(void) {
   frame.diffusion_k0 = 0.3f;
   frame.diffusion_k1 = 0.5f;
   frame.low_factor = 2;
+  frame.depth_opacity = 0.5f;
   return frame; /* textures, size and projection are the host's to say */
 }
 static inline pld_target pld_target_init(pld_target_kind kind, uint32_t name) {

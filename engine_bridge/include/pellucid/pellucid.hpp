@@ -76,6 +76,12 @@ class Pass {
     check(pld_end(pass_));
   }
   void resolve(const pld_target& target) { check(pld_resolve(pass_, &target)); }
+  // What later passes ask of the layers, into a texture: PLD_VIEW_MOTION and its like.
+  void resolve(pld_view view, uint32_t texture) {
+    pld_target target = pld_target_init(PLD_TARGET_TEXTURE, texture);
+    target.view = view;
+    resolve(target);
+  }
 
   void shadowResize(const pld_shadow_info& info) { check(pld_shadow_resize(pass_, &info)); }
   void releaseShadows() { check(pld_shadow_resize(pass_, nullptr)); }

@@ -13,8 +13,8 @@
         and the constants, make what is read visible, clear or load the attachments, draw. The passes of the kind
         PLD_PASS_DRAWS are the host's own draws, with shaders that hold the pass's text; the others draw one triangle of
         three vertices without any input.
-     3. The image of PLD_ROLE_PICTURE is the picture. The passes that write PLD_ROLE_REACTIVE and
-        PLD_ROLE_NEAREST_DEPTH may be left out, and run again.
+     3. The image of PLD_ROLE_PICTURE is the picture. The passes that write those of PLD_ROLE_REACTIVE and after may be
+        left out, and run again.
    No pass reads an image that it writes. */
 #ifndef PELLUCID_RECIPE_H
 #define PELLUCID_RECIPE_H
@@ -49,7 +49,7 @@ typedef struct pld_recipe_info {
                                full-screen passes, whose pipelines are all Pellucid's, is 0 */
   uint32_t uniform_binding; /* where the texts for the host's draws find their block, */
   uint32_t texture_binding; /* the first of their three textures (four where the seam darkens rims), */
-  uint32_t storage_binding; /* and in PLD_TIER_EXACT the first of three to five storage blocks. In Vulkan all of them
+  uint32_t storage_binding; /* and in PLD_TIER_EXACT the first of three to six storage blocks. In Vulkan all of them
                                are bindings of one set, and differ */
   uint32_t fixed_fields;    /* pld_fixed, or-ed: what `fixed` says of every frame stands in the texts as constants */
   const pld_frame* fixed;   /* null where fixed_fields is 0 */
@@ -63,13 +63,17 @@ typedef PLD_ENUM(pld_format){PLD_FORMAT_HOST = 0, /* of an image that is the hos
                              PLD_FORMAT_RGBA8 = 7, PLD_FORMAT_RG8_SNORM = 8, PLD_FORMAT_DEPTH32F = 9} pld_format;
 
 typedef PLD_ENUM(pld_role){
-    PLD_ROLE_OWN = 0,          /* made for the recipe */
-    PLD_ROLE_COLOUR = 1,       /* the host's: the lit opaque picture, as pld_frame.colour_texture */
-    PLD_ROLE_DEPTH = 2,        /* as pld_frame.depth_texture; tested against and read, never written */
-    PLD_ROLE_OCCLUSION = 3,    /* as pld_frame.occlusion_texture */
-    PLD_ROLE_PICTURE = 4,      /* the host's, written: the picture, another image than PLD_ROLE_COLOUR */
-    PLD_ROLE_REACTIVE = 5,     /* PLD_FEATURE_OUTPUTS: red is what PLD_VIEW_REACTIVE shows */
-    PLD_ROLE_NEAREST_DEPTH = 6 /* PLD_FEATURE_OUTPUTS: red is what PLD_VIEW_NEAREST_DEPTH shows */
+    PLD_ROLE_OWN = 0,           /* made for the recipe */
+    PLD_ROLE_COLOUR = 1,        /* the host's: the lit opaque picture, as pld_frame.colour_texture */
+    PLD_ROLE_DEPTH = 2,         /* as pld_frame.depth_texture; tested against and read, never written */
+    PLD_ROLE_OCCLUSION = 3,     /* as pld_frame.occlusion_texture */
+    PLD_ROLE_PICTURE = 4,       /* the host's, written: the picture, another image than PLD_ROLE_COLOUR */
+    PLD_ROLE_REACTIVE = 5,      /* PLD_FEATURE_OUTPUTS: red is what PLD_VIEW_REACTIVE shows */
+    PLD_ROLE_NEAREST_DEPTH = 6, /* PLD_FEATURE_OUTPUTS: red is what PLD_VIEW_NEAREST_DEPTH shows */
+    PLD_ROLE_MEAN_DEPTH = 7,    /* PLD_FEATURE_DEPTHS: red is what PLD_VIEW_MEAN_DEPTH shows */
+    PLD_ROLE_OPACITY_DEPTH = 8, /* PLD_FEATURE_DEPTHS in PLD_TIER_EXACT: red is what PLD_VIEW_OPACITY_DEPTH shows */
+    PLD_ROLE_MOTION = 9,        /* PLD_FEATURE_MOTION: red, green and alpha are what PLD_VIEW_MOTION shows */
+    PLD_ROLE_IDENTITY = 10      /* PLD_FEATURE_IDENTITY: red is what PLD_VIEW_IDENTITY shows */
 } pld_role;
 
 typedef PLD_ENUM(pld_usage){PLD_USAGE_READ = 1, PLD_USAGE_COLOUR = 2, PLD_USAGE_DEPTH = 4} pld_usage;
