@@ -373,7 +373,9 @@ FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, con
       result.endPixel();
     }
   }
-  result.addColumnsOf(layers_);
+  FragmentLists like;
+  like.resize(1, layers_);
+  result.addColumnsOf(like);
   return result;
 }
 
