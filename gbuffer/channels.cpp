@@ -373,4 +373,18 @@ std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channel
   return choice;
 }
 
+std::optional<PassChannels> positionsOf(const std::vector<NamedChannel>& channels, const NamedChannel& depth) {
+  if (depth.suffix != "z") return std::nullopt;
+  PassChannels pass{depth.part, depth.layerName, {nullptr, nullptr, depth.channel}};
+  for (const NamedChannel& channel : channels) {
+    const bool beside = channel.part == depth.part && channel.layerName == depth.layerName;
+    if (beside && channel.channel->type != PixelType::uint32 && channel.suffix.size() == 1 &&
+        channel.suffix[0] >= 'x' && channel.suffix[0] < 'z')
+      pass.channel[channel.suffix[0] - 'x'] = channel.channel;
+  }
+  // Depth that is written three times is no position.
+  const bool whole = pass.channel[0] && pass.channel[1] && pass.channel[0]->bytes != depth.channel->bytes;
+  return whole ? std::optional<PassChannels>(pass) : std::nullopt;
+}
+
 }  // namespace pellucid

@@ -67,6 +67,9 @@ enum class Pass { normal, position, occlusion };
 std::optional<PassChannels> resolvePass(const std::vector<NamedChannel>& channels, const BeautyChannels& beauty,
                                         Pass pass);
 
+// The layer whose X, Y and Z are a position, of which the channel is the Z; nothing for depth by itself.
+std::optional<PassChannels> positionsOf(const std::vector<NamedChannel>& channels, const NamedChannel& depth);
+
 // Whether a name says such a pass, or one light's part of the picture: "N", "AO", "light.key".
 bool isPassName(const std::string& name);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace pellucid {
 namespace {
@@ -78,15 +79,29 @@ Box boxOfGrid(const DensityGrid& grid) {
   return bounds.box;
 }
 
+// How far what reaches the fog is sampled: all of the way to surfaces, but not to a backdrop many times as far away as
+// they are, before which a fixed number of texels would be too few for what stands near.
+float lightReach(const MediumSettings& settings, const Image<float>& viewZ) {
+  constexpr float kBackdrop = 16.0f;  // times the depth than which a quarter of the surfaces are nearer
+  std::vector<float> surfaces;
+  for (std::size_t i = 0; i < viewZ.size(); ++i)
+    if (std::isfinite(viewZ[i])) surfaces.push_back(viewZ[i]);
+  auto limit = static_cast<float>(settings.farthest.value_or(kFogBeforeNothing));
+  if (surfaces.empty()) return limit;
+  const float farthest = *std::max_element(surfaces.begin(), surfaces.end());
+  if (!settings.farthest && farthest > limit) {
+    const auto quarter = surfaces.begin() + static_cast<std::ptrdiff_t>(surfaces.size() / 4);
+    std::nth_element(surfaces.begin(), quarter, surfaces.end());
+    limit = std::max(limit, kBackdrop * *quarter);
+  }
+  return std::min(farthest, limit);
+}
+
 }  // namespace
 
 Box fogBounds(const MediumSettings& settings, const Camera& camera, const GBuffer& gbuffer) {
   if (settings.grid) return boxOfGrid(*settings.grid);
-  float farthest = 0.0f;
-  for (std::size_t i = 0; i < gbuffer.viewZ.size(); ++i)
-    if (std::isfinite(gbuffer.viewZ[i])) farthest = std::max(farthest, gbuffer.viewZ[i]);
-  const auto limit = static_cast<float>(settings.farthest.value_or(kFogBeforeNothing));
-  farthest = farthest > 0.0f ? std::min(farthest, limit) : limit;
+  const float farthest = lightReach(settings, gbuffer.viewZ);
   const PixelRays rays = pixelRays(camera, gbuffer.display, {gbuffer.data.x0, gbuffer.data.y0}, {0.5, 0.5});
   const glm::dmat4 worldFromView = glm::inverse(camera.viewFromWorld);
   Bounds bounds;

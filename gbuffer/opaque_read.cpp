@@ -164,13 +164,16 @@ void readOtherPasses(const std::vector<NamedChannel>& channels, const BeautyChan
   if (const auto occlusion = passOf(Pass::occlusion)) readOcclusion(*occlusion, file);
 }
 
-// What --depth-kind says, else what the producer writes; planar for a channel that --depth names beside its own.
+// What --depth-kind says, else what the producer writes. A channel that --depth names beside its own is planar; of one
+// who writes distances along rays, such as Mitsuba 2 in a channel of any name, the planes decide.
 DepthKind kindOf(const ReadOptions& options, const Producer* producer, const std::vector<NamedChannel>& channels,
                  const NamedChannel& depth) {
   if (!options.depthKind.empty()) return parseDepthKind(options.depthKind);
   const bool another =
       !options.depthChannel.empty() && producer && *producer->depth && !isDepthOf(*producer, channels, depth);
-  return parseDepthKind(producer && !another ? producer->kind : "planar");
+  if (!another) return parseDepthKind(producer ? producer->kind : "planar");
+  const bool rays = parseDepthKind(producer->kind).meaning == DepthMeaning::ray && !positionsOf(channels, depth);
+  return parseDepthKind(rays ? "planar|ray" : "planar");
 }
 
 // What our own G-buffers say in their header, else what the producer uses unless it is told otherwise.

@@ -5,8 +5,10 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
@@ -74,6 +76,17 @@ double medianDepth(const GBuffer& gbuffer) {
   return static_cast<double>(std::bit_cast<float>(high << 16 | digitAt(lower, rank)));
 }
 
+// In metres, over the pixels that hit something; what the file has may be another unit or kind.
+std::string metresText(const OpaqueFile& file) {
+  const Image<float>& viewZ = file.gbuffer.viewZ;
+  float least = std::numeric_limits<float>::infinity(), most = 0.0f;
+  for (std::size_t i = 0; i < viewZ.size(); ++i)
+    if (std::isfinite(viewZ[i])) least = std::min(least, viewZ[i]), most = std::max(most, viewZ[i]);
+  const std::string stored = fmt::format("{:.6g} to {:.6g}", file.choice.least, file.choice.most),
+                    metres = fmt::format("{:.6g} to {:.6g}", least, most);
+  return stored == metres ? stored : fmt::format("{}, which is {} m", stored, metres);
+}
+
 std::string depthLine(const OpaqueFile& file) {
   const OpaqueChoice& choice = file.choice;
   const std::size_t pixels = file.gbuffer.viewZ.size();
@@ -81,7 +94,7 @@ std::string depthLine(const OpaqueFile& file) {
       fmt::format("depth: {}{}{}, {}, ", choice.depthChannel, choice.depthFile.empty() ? "" : " of ", choice.depthFile,
                   choice.depthKind.empty() ? "planar" : depthKindWords(parseDepthKind(choice.depthKind)));
   if (choice.farPixels < pixels)
-    line += fmt::format("{:.6g} to {:.6g}, median {:.6g} m, ", choice.least, choice.most, medianDepth(file.gbuffer));
+    line += fmt::format("{}, median {:.6g} m, ", metresText(file), medianDepth(file.gbuffer));
   return line + fmt::format("1 unit is {:g} m, {:.3g}% of the pixels show nothing", file.metresPerUnit,
                             pixels ? 100.0 * static_cast<double>(choice.farPixels) / static_cast<double>(pixels) : 0.0);
 }

@@ -68,9 +68,8 @@ Fit fitOf(const std::vector<Sample>& samples, const Camera& camera, const Window
   return {median(std::move(residuals)), median(std::move(depthErrors))};
 }
 
-}  // namespace
-
-std::optional<double> verifyCamera(const OpaqueFile& file, const Camera& camera) {
+// The pass that its name calls positions, else the layer whose Z was taken for the depth.
+std::optional<PassChannels> positionPass(const OpaqueFile& file) {
   const std::vector<NamedChannel> channels = nameChannels(file.document);
   BeautyChannels beauty;
   for (const NamedChannel& named : channels)
@@ -79,7 +78,17 @@ std::optional<double> verifyCamera(const OpaqueFile& file, const Camera& camera)
       beauty.view = named.view;
       beauty.layers = named.layers;
     }
-  const std::optional<PassChannels> pass = resolvePass(channels, beauty, Pass::position);
+  if (const auto pass = resolvePass(channels, beauty, Pass::position)) return pass;
+  for (const NamedChannel& named : channels)
+    if (named.part == file.choice.depthPart && named.channel->name == file.choice.depthChannel)
+      return positionsOf(channels, named);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> verifyCamera(const OpaqueFile& file, const Camera& camera) {
+  const std::optional<PassChannels> pass = positionPass(file);
   if (!pass) return std::nullopt;
   const std::vector<Sample> samples = samplesOf(file, *pass, file.metresPerUnit);
   if (samples.size() < kFewestPixels) return std::nullopt;
@@ -98,12 +107,12 @@ std::optional<double> verifyCamera(const OpaqueFile& file, const Camera& camera)
   if (!(best.residual <= kLargestResidual))
     throw MeaningError(
         fmt::format("{}: camera {}: found positions {} a median of {:.3g} pixels from where it sees them, "
-                    "expected at most {}",
+                    "expected at most {}: another --camera?",
                     file.document.path, camera.origin, pass->layerName, best.residual, kLargestResidual));
   if (!(best.depthError <= kLargestDepthError))
     throw MeaningError(
         fmt::format("{}: camera {}: found positions {} a median of {:.3g}% from the depth {}, expected at "
-                    "most {:.3g}%: another --depth-kind or --unit?",
+                    "most {:.3g}%: another --depth, --depth-kind or --unit?",
                     file.document.path, camera.origin, pass->layerName, 100 * best.depthError, file.choice.depthChannel,
                     100 * kLargestDepthError));
   return best.residual;

@@ -55,7 +55,8 @@ void JsonView::expectKind(bool matches, const char* kind) const {
 std::optional<JsonView> JsonView::find(const char* key) const {
   expectKind(value_->is_object(), "an object");
   const auto member = value_->find(key);
-  if (member == value_->end()) return std::nullopt;
+  // Exporters write null for what they leave out, and viewers take it so.
+  if (member == value_->end() || member->is_null()) return std::nullopt;
   return JsonView(*member, *file_, where_.empty() ? std::string(key) : where_ + "." + key);
 }
 

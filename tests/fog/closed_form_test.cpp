@@ -161,6 +161,26 @@ TEST(Fog, ReachesSurfacesHoweverFar) {
     }
 }
 
+// What stands in the lamps' way is looked up as far as the surfaces are, and not to the end of a backdrop.
+TEST(Fog, LightIsSampledAsFarAsSurfaces) {
+  const auto reach = [](const FogStage& stage, std::optional<double> farthest) {
+    MediumSettings settings;
+    settings.density = 1e-4;
+    settings.farthest = farthest;
+    return -fogBounds(settings, stage.camera, stage.gbuffer).low.z;
+  };
+  for (const float wall : {9e-3f, 9.0f, 1400.0f, 20000.0f}) {
+    const FogStage stage(3, 3, wall);
+    EXPECT_NEAR(reach(stage, std::nullopt), static_cast<double>(wall), 1e-6 * static_cast<double>(wall));
+    EXPECT_NEAR(reach(stage, 600.0), std::min(static_cast<double>(wall), 600.0), 1e-3);
+  }
+  FogStage backdrop(3, 3, 10.0f);
+  for (int x = 0; x < 3; ++x) backdrop.gbuffer.viewZ.at(x, 0) = 1e6f;
+  EXPECT_NEAR(reach(backdrop, std::nullopt), 1000.0, 1e-6);
+  const FogStage nothing(3, 3, std::numeric_limits<float>::infinity());
+  EXPECT_NEAR(reach(nothing, std::nullopt), 1000.0, 1e-6);
+}
+
 TEST(Fog, ExtremesStayFinite) {
   for (const double density : {0.0, 1e-12, 1e3, 1e9})
     for (const double height : {0.0, 1e-3, 1e6})

@@ -12,6 +12,7 @@
 #include "exr_files.h"
 #include "gbuffer/errors.h"
 #include "gbuffer/opaque_io.h"
+#include "room.h"
 
 namespace pellucid::test {
 namespace {
@@ -284,6 +285,37 @@ TEST(VerifyCamera, KnowsWhenItCannotTell) {
   const ExtraLayer nowhere{"P", {{"X", Image<float>(8, 8)}, {"Y", Image<float>(8, 8)}, {"Z", Image<float>(8, 8)}}};
   writeLayers(folder.path("zero.exr"), window, window, {colour, nowhere});
   EXPECT_FALSE(verifyCamera(readOpaque(folder.path("zero.exr"), {}), Camera{}).has_value()) << "0 is no position";
+}
+
+// A layer of any name whose Z is taken for the depth holds positions, and they are held against the camera: in the
+// camera's space its Z is a depth, in the world's it is none.
+TEST(VerifyCamera, TheZOfPositionsIsNoDepthInTheWorldsSpace) {
+  TemporaryFolder folder;
+  const Room room(true);
+  ReadOptions options;
+  options.depthChannel = "pp.Z";
+  //   depthAlong  of z: -1 in the camera's space
+  const auto residualOf = [&](const glm::dmat4& spaceFromView, const Camera& camera, double depthAlong, bool thrice) {
+    std::vector<float> planes[3];
+    for (std::size_t i = 0; i < room.z.size(); ++i) {
+      const auto [a, b] = room.planeAt(i);
+      const glm::dvec3 p(spaceFromView * glm::dvec4(a * room.z[i], b * room.z[i], -room.z[i], 1.0));
+      for (int c = 0; c < 3; ++c) planes[c].push_back(static_cast<float>(thrice || c == 2 ? depthAlong * p.z : p[c]));
+    }
+    Part part = room.part(false);
+    const char* names[] = {"pp.X", "pp.Y", "pp.Z"};
+    for (int c = 0; c < 3; ++c) part.planes.push_back(floatPlane(names[c], planes[c]));
+    writeFile(folder.path("shot.exr"), {part});
+    return verifyCamera(readOpaque(folder.path("shot.exr"), options, &camera), camera);
+  };
+  Camera camera = room.camera;
+  const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1.0), {3.0, 1.0, 40.0}), 1.0, {0.0, 1.0, 0.0});
+  camera.viewFromWorld = glm::inverse(turned);
+  const std::optional<double> own = residualOf(glm::dmat4(1.0), camera, -1.0, false);
+  ASSERT_TRUE(own.has_value());
+  EXPECT_LT(*own, 1e-3);
+  EXPECT_FALSE(residualOf(glm::dmat4(1.0), camera, -1.0, true).has_value()) << "depth three times is no position";
+  EXPECT_THROW(residualOf(turned, camera, 1.0, false), MeaningError);
 }
 
 }  // namespace

@@ -86,6 +86,30 @@ TEST(Producers, AWallThatTellsNothingIsAsked) {
     }
 }
 
+// Mitsuba 2 calls its depth what the user calls it, "dd.y" after its guide, and measures along rays as Mitsuba 3 does.
+TEST(Producers, ADepthThatIsNamedIsOfItsProducersKind) {
+  TemporaryFolder folder;
+  const Room room;
+  const auto along = room.depth([](double z, double ray) { return z * ray; });
+  const auto planar = room.depth([](double z, double) { return z; });
+  ReadOptions options;
+  options.depthChannel = "dd.y";
+  const auto kindOf = [&](const std::vector<float>& values, const char* generatedBy) {
+    Part part = room.part(true);
+    part.planes.push_back(floatPlane("dd.y", values));
+    if (*generatedBy) part.strings["generatedBy"] = generatedBy;
+    writeFile(folder.path("shot.exr"), {part});
+    return readOpaque(folder.path("shot.exr"), options).choice.depthKind;
+  };
+  EXPECT_EQ(kindOf(along, "Mitsuba version 2.2.1"), "ray");
+  EXPECT_EQ(kindOf(planar, "Mitsuba version 2.2.1"), "planar");
+  EXPECT_EQ(kindOf(planar, ""), "planar");
+  std::uint32_t state = 1;
+  const auto noise =
+      room.depth([&](double, double) { return 1 + 9 * ((state = state * 1664525u + 1013904223u) / 4294967296.0); });
+  EXPECT_THROW(kindOf(noise, "Mitsuba version 2.2.1"), MeaningError);
+}
+
 TEST(Evidence, PlanesTellReadingsApartAndNoiseTellsNone) {
   TemporaryFolder folder;
   std::size_t right = 0, asked = 0, wrong = 0;

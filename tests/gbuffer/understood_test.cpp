@@ -61,5 +61,23 @@ TEST(Understood, NothingWasHit) {
   EXPECT_NE(line.find("100% of the pixels show nothing"), std::string::npos) << line;
 }
 
+// Numbers of another unit or kind are told as metres, too; those that are metres once.
+TEST(Understood, TheRangeInMetres) {
+  OpaqueFile file;
+  file.document.parts.emplace_back();
+  file.choice.depthChannel = "Z";
+  file.choice.depthKind = "inverse";
+  file.choice.least = 0.125;
+  file.choice.most = 0.5;
+  file.gbuffer.viewZ = Image<float>(2, 1, 2.0f);
+  file.gbuffer.viewZ[1] = 8.0f;
+  EXPECT_NE(understoodLines(file)[1].find("0.125 to 0.5, which is 2 to 8 m, median 8 m"), std::string::npos)
+      << understoodLines(file)[1];
+  file.choice.depthKind = "planar";
+  file.choice.least = 2.0;
+  file.choice.most = 8.0;
+  EXPECT_NE(understoodLines(file)[1].find("(planar), 2 to 8, median 8 m"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pellucid

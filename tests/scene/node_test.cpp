@@ -268,6 +268,34 @@ TEST(Cameras, AnotherShapeIsFittedWithoutStretch) {
     }
 }
 
+// Exporters write null for what they leave out.
+TEST(Nodes, MembersThatAreNullAreAbsent) {
+  Builder builder;
+  Json& primitive = builder.mesh({{"POSITION", builder.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)}});
+  primitive["material"] = 0;
+  Json& json = builder.json;
+  json["materials"].push_back({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", Json::object()}});
+  json["cameras"].push_back({{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}});
+  json["nodes"].push_back({{"camera", 0}});
+  const auto setNull = [](Json& object, const std::vector<const char*>& members) {
+    for (const char* member : members) object[member] = nullptr;
+  };
+  setNull(json, {"scene", "animations", "skins", "extensionsUsed", "extensionsRequired", "extras"});
+  setNull(json["nodes"][0], {"name", "children", "skin", "camera", "extensions", "matrix", "rotation", "weights"});
+  setNull(json["meshes"][0]["primitives"][0], {"mode", "targets", "indices"});
+  setNull(json["accessors"][0], {"normalized", "byteOffset", "sparse"});
+  setNull(json["bufferViews"][0], {"byteStride", "target"});
+  setNull(json["materials"][0], {"name", "emissiveFactor", "normalTexture", "alphaCutoff", "extensions"});
+  setNull(json["materials"][0]["pbrMetallicRoughness"], {"baseColorTexture", "baseColorFactor", "roughnessFactor"});
+  setNull(json["cameras"][0]["perspective"], {"aspectRatio", "zfar"});
+  const Scene scene = builder.load();
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(1.0f));
+  json["meshes"][0]["primitives"][0]["attributes"] = nullptr;
+  expectRefusal(refusalOf(builder), 3, {"attributes"});
+}
+
 TEST(Cameras, ScaleDoesNotCount) {
   const Json lens = {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}};
   const double h = std::sqrt(0.5);
