@@ -19,7 +19,8 @@ struct Fragment {
   float z;                 // planar metres, > 0
   glm::vec2 offset;        // refraction delta, float pixels, y down
   float variance;          // diffusion, one layer's s^2, float pixels^2
-  std::uint32_t identity;  // hash of file, node, mesh and triangle: the same for every chunking and order
+  // Hash of file, node, mesh and triangle, by --noise object of a piece of it: the same for every chunking and order.
+  std::uint32_t identity;
 };
 static_assert(sizeof(Fragment) == 48);
 
