@@ -51,6 +51,7 @@ class Finder {
     double share;               // of the nearer, [0,1]
     double off;                 // how far the pixel's colour lies from it, as a part of the line's length
     bool byObjects = false;     // the share is that of objects the file tells apart
+    bool guessed = false;       // some colour is continued, and seen nowhere
   };
   struct Beside {
     Side other = Side::own;  // own: none of the neighbours lies there
@@ -246,6 +247,7 @@ std::optional<Finder::Mixture> Finder::mixtureOf(const glm::dvec4& colour, const
       const double off = glm::length(colour - farther - share * across) / length;
       if (off > kOffLine || (best && (best->off < kOnLine || !(off < kBetter * best->off)))) continue;
       best = Mixture{nearer, farther, colours.farther.nearest, share, off};
+      best->guessed = nearer != colours.nearer.nearest || farther != colours.farther.nearest;
     }
   return best;
 }
@@ -286,15 +288,16 @@ bool Finder::leavesOwn(Side other, Mixture& mixture) {
   return true;
 }
 
-// Whether the colour is that of a pixel beside, on the same surface, that no edge touches: such a pixel is no mixture,
-// whatever the mean of those about it is mixed with, as where two sides of a box meet.
+// Whether the colour is that of a pixel close by, on the same surface, that no edge touches: such a pixel is no
+// mixture, whatever the mean of those about it is mixed with, as where two sides of a box meet.
 bool Finder::isAsBeside(int x, int y, const Mixture& mixture) const {
   const double same = kPure * glm::length(mixture.nearer - mixture.farther);
   const glm::dvec4 colour(gbuffer_.beauty.at(x, y));
-  for (int v = y - 1; v <= y + 1; ++v)
-    for (int u = x - 1; u <= x + 1; ++u)
-      if (sides_.inside(u, v) && !sides_.touchesEdge(u, v) && sides_.sideOf(x, y, u, v) == Side::own &&
-          glm::length(colour - glm::dvec4(gbuffer_.beauty.at(u, v))) <= same)
+  const int reach = mixture.guessed ? kReach : 1;
+  for (int v = y - reach; v <= y + reach; ++v)
+    for (int u = x - reach; u <= x + reach; ++u)
+      if (sides_.inside(u, v) && !sides_.touchesEdge(u, v) &&
+          glm::length(colour - glm::dvec4(gbuffer_.beauty.at(u, v))) <= same && sides_.sideOf(x, y, u, v) == Side::own)
         return true;
   return false;
 }
