@@ -14,6 +14,7 @@ constexpr int kKnown = 2 * kReach;  // around a part: neighbours that tell a slo
 // Two pixels side by side that continue nothing are taken for one surface where what is linear changes by less.
 constexpr double kPairChange = 1.0 / 16.0;
 constexpr double kKink = 8.0;            // a bend so many times that of the next pixels is none of a curve
+constexpr double kLevel = 1.0 / 16.0;    // a step so much lower than that to the other side
 constexpr double kGrazing = 1.0 / 64.0;  // a normal this square to the ray tells no slope
 
 // Along one axis through a pixel: what is linear on a plane, as a part of its value at the pixel.
@@ -62,9 +63,10 @@ std::optional<double> slopeToOneSide(const Line& line) {
   if (!(least <= 0.5 * std::abs(change))) return std::nullopt;
   // Curves bend little by little: what all but ends bending at the neighbour is a plane of its own.
   if (least > kKink * (line.bend(2 * side) + line.rounding)) return std::nullopt;
-  // A neighbour to the other side beyond which there is nothing tells no bend, but may lie much more level.
-  if (std::isnan(bends[side == 1 ? 1 : 0]) && std::abs(line.at(-side) - 1.0) < 0.5 * std::abs(change))
-    return std::nullopt;
+  // A neighbour to the other side beyond which there is nothing tells no bend, but may lie much more level. Where one
+  // lies almost level, three surfaces may stand in a line by chance.
+  const double level = std::isnan(bends[side == 1 ? 1 : 0]) ? 0.5 : kLevel;
+  if (std::abs(line.at(-side) - 1.0) < level * std::abs(change)) return std::nullopt;
   return side * (change - 0.5 * (line.at(2 * side) - 2.0 * line.at(side) + 1.0));
 }
 
