@@ -78,7 +78,7 @@ void PlanBuilder::addFold(pld_stage stage, const char* name, const Planes& plane
   PlannedPass& pass =
       addPass((std::string(name) + " folded").c_str(), stage, file, foldDefines(low ? lowPermutation(p_) : p_, stage));
   pass.part = low ? PartOfFrame::low : PartOfFrame::picture;
-  pass.lists = listBlocks(p_, stage);
+  pass.lists = listsOf(p_, stage);
   pass.numbers = {StageNumber::rowLength};
   if (!solids && !p_.sorted()) pass.numbers.push_back(StageNumber::weight);
   if (!solids && p_.sorted() && !solids_.empty()) read(pass, solids_[0].image, kSolidUnit, "solidHere");
