@@ -320,9 +320,8 @@ LowResolutionFragments::Added LowResolutionFragments::addedAt(glm::ivec2 place) 
   const std::optional<UpsampledLayer> layer = source_->upsampler.at(place.x, place.y);
   if (!layer || !layer->isThere()) return added;
   added.isThere = true;
-  added.whole.resize(1, layers_);
-  added.whole.fragments.front() = fragmentOf(*layer);
-  setColumns(added.whole, 0, layer->scatter);
+  added.whole = fragmentOf(*layer);
+  added.scatter = layer->scatter;
   return added;
 }
 
@@ -352,16 +351,21 @@ std::vector<LowResolutionFragments::Added> LowResolutionFragments::addedTo(const
   return all;
 }
 
-void LowResolutionFragments::append(const Added& added, float solidZ, FragmentLists& lists) {
+//   one  list of one fragment, with the columns that these layers have
+void LowResolutionFragments::append(const Added& added, float solidZ, FragmentLists& one, FragmentLists& lists) {
   for (const Fragment& run : added.runs)
     if (run.z <= solidZ) lists.append(run);
-  if (added.runs.empty() && added.isThere && added.whole.fragments.front().z <= solidZ) lists.append(added.whole, 0, 1);
+  if (!added.runs.empty() || !added.isThere || added.whole.z > solidZ) return;
+  one.fragments.front() = added.whole;
+  setColumns(one, 0, added.scatter);
+  lists.append(one, 0, 1);
 }
 
 template <class PlaceOf>
 FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const {
   constexpr std::size_t kAtOnce = std::size_t{1} << 15;  // pixels
-  FragmentLists result = emptyLike(lists);
+  FragmentLists one, result = emptyLike(lists);
+  one.resize(1, layers_);
   result.offsets.reserve(lists.offsets.size());
   result.fragments.reserve(lists.fragments.size());
   for (std::size_t first = 0; first < lists.solid.size(); first += kAtOnce) {
@@ -369,13 +373,11 @@ FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, con
     const std::vector<Added> added = addedTo(lists, placeOf, first, end);
     for (std::size_t pixel = first; pixel < end; ++pixel) {
       result.append(lists, lists.offsets[pixel], lists.offsets[pixel + 1]);
-      append(added[pixel - first], lists.solid[pixel].a, result);
+      append(added[pixel - first], lists.solid[pixel].a, one, result);
       result.endPixel();
     }
   }
-  FragmentLists like;
-  like.resize(1, layers_);
-  result.addColumnsOf(like);
+  result.addColumnsOf(one);
   return result;
 }
 

@@ -94,14 +94,15 @@ class LowResolutionFragments {
   // What a pixel gets: all its layers as one, or in runs.
   struct Added {
     bool isThere = false;
-    FragmentLists whole;         // one fragment with its columns
+    Fragment whole;
+    ScatterTerms scatter{};      // of its columns
     std::vector<Fragment> runs;  // in its place, unless empty
   };
   struct Source;
   template <class PlaceOf>
   FragmentLists amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const;
   Added addedAt(glm::ivec2 place) const;
-  static void append(const Added& added, float solidZ, FragmentLists& lists);
+  static void append(const Added& added, float solidZ, FragmentLists& one, FragmentLists& lists);
   // Of some pixels of the lists.
   template <class PlaceOf>
   std::vector<Added> addedTo(const FragmentLists& lists, const PlaceOf& placeOf, std::size_t begin,

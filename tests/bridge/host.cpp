@@ -227,4 +227,29 @@ void main() {
   glDeleteBuffers(3, buffers);
 }
 
+void drawOverAll(pld_pass* pass, pld_stage stage, const pld_frame& frame, const std::string& main) {
+  GLuint array = 0;
+  const char* seam = nullptr;
+  glCreateVertexArrays(1, &array);
+  ASSERT_EQ(pld_glsl(pass, stage, 330, &seam), PLD_OK) << pld_message(pass);
+  const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam + main);
+  ASSERT_NE(program, 0u);
+  ASSERT_EQ(pld_connect(pass, program), PLD_OK);
+  ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
+  glUseProgram(program);
+  glBindVertexArray(array);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  ASSERT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
+  glDeleteProgram(program);
+  glDeleteVertexArrays(1, &array);
+}
+
+std::vector<float> seen(const Host& host, pld_pass* pass, pld_view view) {
+  pld_target target = host.target();
+  target.view = view;
+  EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  return host.picture();
+}
+
 }  // namespace pellucid::test

@@ -52,6 +52,11 @@ class Host {
   mutable Log log;
 };
 
+// Draws over the whole target with a stage's seam and this main(), and ends the stage. GLSL 3.30.
+void drawOverAll(pld_pass* pass, pld_stage stage, const pld_frame& frame, const std::string& main);
+// What a view resolves to.
+std::vector<float> seen(const Host& host, pld_pass* pass, pld_view view);
+
 // What a replayed fragment tells of itself, by its Fragment::identity: motion in pixels, and identity.
 struct ToldMarks {
   float motion[2];

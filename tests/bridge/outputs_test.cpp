@@ -103,14 +103,6 @@ Shot shotOf(const Wanted& wanted) {
   return shot;
 }
 
-std::vector<float> seen(const Host& host, pld_pass* pass, pld_view view) {
-  pld_target target = host.target();
-  target.view = view;
-  EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
-  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-  return host.picture();
-}
-
 // Relative to what is expected where that is more than 1; 0 where both are infinite.
 double offBy(double expected, float found) {
   const double there = found;
@@ -242,25 +234,12 @@ TEST(BridgeTold, ThePictureKeepsItsBits) {
   }
 }
 
-// One sheet over the whole picture, by the host's main() or a plain one.
+// One sheet over the whole picture.
 void drawSheet(pld_pass* pass, pld_stage stage, const pld_frame& frame, float z) {
-  const char* seam = nullptr;
-  GLuint array = 0;
-  glCreateVertexArrays(1, &array);
-  ASSERT_EQ(pld_glsl(pass, stage, 330, &seam), PLD_OK) << pld_message(pass);
-  const std::string main = "void main() { PldSurface s = pldSurface(vec3(0.1), 0.5, vec3(0.0), vec3(0.0, 0.0, " +
-                           std::to_string(-z) + "));\n s.motion = vec2(8.0, -2.0);\n s.identity = 20000000u;\n" +
-                           " pldWriteFragment(s); }\n";
-  const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam + main);
-  ASSERT_NE(program, 0u);
-  ASSERT_EQ(pld_connect(pass, program), PLD_OK);
-  ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
-  glUseProgram(program);
-  glBindVertexArray(array);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  ASSERT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
-  glDeleteProgram(program);
-  glDeleteVertexArrays(1, &array);
+  drawOverAll(pass, stage, frame,
+              "void main() { PldSurface s = pldSurface(vec3(0.1), 0.5, vec3(0.0), vec3(0.0, 0.0, " +
+                  std::to_string(-z) +
+                  "));\n s.motion = vec2(8.0, -2.0);\n s.identity = 20000000u;\n pldWriteFragment(s); }\n");
 }
 
 // Low resolution is in the mean depth, and tells nothing else; validation finds no fault. Identities are clamped.

@@ -12,31 +12,6 @@ namespace {
 
 constexpr int kWidth = 48, kHeight = 32;
 
-void draw(pld_pass* pass, pld_stage stage, const pld_frame& frame, const std::string& main) {
-  GLuint array = 0;
-  const char* seam = nullptr;
-  glCreateVertexArrays(1, &array);
-  ASSERT_EQ(pld_glsl(pass, stage, 330, &seam), PLD_OK) << pld_message(pass);
-  const GLuint program = makeProgram(kFullscreenVertex, std::string("#version 330 core\n") + seam + main);
-  ASSERT_NE(program, 0u);
-  ASSERT_EQ(pld_connect(pass, program), PLD_OK);
-  ASSERT_EQ(pld_begin(pass, stage, &frame), PLD_OK) << pld_message(pass);
-  glUseProgram(program);
-  glBindVertexArray(array);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  ASSERT_EQ(pld_end(pass), PLD_OK) << pld_message(pass);
-  glDeleteProgram(program);
-  glDeleteVertexArrays(1, &array);
-}
-
-std::vector<float> seen(const Host& host, pld_pass* pass, pld_view view) {
-  pld_target target = host.target();
-  target.view = view;
-  EXPECT_EQ(pld_resolve(pass, &target), PLD_OK) << pld_message(pass);
-  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-  return host.picture();
-}
-
 // How far three channels are from what is expected, at most, over all pixels; alpha is 1.
 template <class F>
 double worstOf(const std::vector<float>& picture, int width, F expected) {
@@ -70,7 +45,7 @@ TEST(BridgeViews, RimsShowTheirOcclusionAndWhatItTakes) {
         "vec2(0.0));\n"
         "  else pldWriteFragment(pldSurface(vec3(0.2), 0.5, vec3(0.0), vec3(0.0, 0.0, z)));\n"
         "}\n";
-    for (const pld_stage stage : {PLD_STAGE_LAYERS, PLD_STAGE_RIMS}) draw(pass, stage, frame, main);
+    for (const pld_stage stage : {PLD_STAGE_LAYERS, PLD_STAGE_RIMS}) drawOverAll(pass, stage, frame, main);
     constexpr double open = 128.0 / 255.0;
     const double around[3] = {.1, .15, .2}, background[3] = {.5, .4, .3};
     const double occlusion = worstOf(seen(host, pass, PLD_VIEW_RIM_OCCLUSION), kWidth, [&](int x, int, int c) {
@@ -106,12 +81,13 @@ TEST(BridgeViews, LowLayersAreShownTexelByTexel) {
       pld_frame frame = host.frame();
       frame.low_factor = factor;
       const int edge = kWidth / 3 / factor;  // texels
-      draw(pass, PLD_STAGE_LAYERS, frame,
-           "void main() { discard; pldWriteFragment(pldSurface(vec3(0.0), 0.5, vec3(0.0), vec3(0.0, 0.0, -3.0))); }\n");
+      drawOverAll(
+          pass, PLD_STAGE_LAYERS, frame,
+          "void main() { discard; pldWriteFragment(pldSurface(vec3(0.0), 0.5, vec3(0.0), vec3(0.0, 0.0, -3.0))); }\n");
       const std::string main = "void main() {\n  if (gl_FragCoord.x > " + std::to_string(edge) +
                                ".0) discard;\n  pldWriteFragment(pldSurface(vec3(0.2, 0.1, 0.05), 0.5, vec3(0.5, 0.25, "
                                "0.75), vec3(0.0, 0.0, -2.0)));\n}\n";
-      draw(pass, PLD_STAGE_LOW, frame, main);
+      drawOverAll(pass, PLD_STAGE_LOW, frame, main);
       const double o[3] = {.25, .375, .125}, light[3] = {.2, .1, .05};
       const bool half = tier == PLD_TIER_HALF;
       const auto inside = [&](int x) { return x / factor < edge; };
