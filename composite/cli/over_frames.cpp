@@ -10,6 +10,7 @@
 #include "composite/cli/frame_digest.h"
 #include "composite/cli/frame_report.h"
 #include "composite/cli/frame_turn.h"
+#include "composite/cli/freed_memory.h"
 #include "composite/cli/messages.h"
 #include "composite/cli/verb_outputs.h"
 #include "composite/pipeline/default_weight.h"
@@ -83,6 +84,7 @@ void overFrames(const CLI::App& verb, const SequenceFlags& flags, const VerbRun&
   const int jobs = std::min<int>(flags.jobs, static_cast<int>(choice.frames().size()));
   shareOut(verb, jobs);
   choice.put(choice.frames().front());
+  keepPlanes();
   FrameTurn turn(verb, choice, flags, run);
   FrameWork frames;
   frames.count = choice.frames().size();

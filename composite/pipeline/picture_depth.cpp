@@ -11,14 +11,25 @@ Window partOf(const Window& data, const Window& area, int around) {
           std::min(area.x1 - data.x0 + around, data.width()), std::min(area.y1 - data.y0 + around, data.height())};
 }
 
+Window inDisplay(const Window& part, const Window& data) {
+  return {part.x0 + data.x0, part.y0 + data.y0, part.x1 + data.x0, part.y1 + data.y0};
+}
+
 bool holds(const Window& outer, const Window& inner) {
   return outer.x0 <= inner.x0 && outer.y0 <= inner.y0 && outer.x1 >= inner.x1 && outer.y1 >= inner.y1;
 }
 
-// Both, and what lies between.
-Window united(const Window& a, const Window& b) {
-  if (a.width() == 0) return b;
-  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+// The part that is known, grown by another. Things that move ask for a little more in every frame of a shot: a side
+// that gives way does so by a quarter of the part at once, so that few frames have to look at all of it again.
+Window grown(const Window& known, const Window& part, const Window& data) {
+  if (known.width() == 0) return part;
+  const int ahead = std::max(known.width(), known.height()) / 4;
+  const auto lower = [&](int from, int to) { return to < from ? std::max(std::min(to, from - ahead), 0) : from; };
+  const auto upper = [&](int from, int to, int end) {
+    return to > from ? std::min(std::max(to, from + ahead), end) : from;
+  };
+  return {lower(known.x0, part.x0), lower(known.y0, part.y0), upper(known.x1, part.x1, data.width()),
+          upper(known.y1, part.y1, data.height())};
 }
 
 }  // namespace
@@ -27,7 +38,7 @@ const DepthPlanes& PictureDepth::planes(const GBuffer& gbuffer, const Camera& ca
                                         Journal& journal) {
   const Window part = partOf(gbuffer.data, area, kEdgeSurroundings);
   if (!planes_ || !holds(planes_->part(), part)) {
-    const Window all = planes_ ? united(planes_->part(), part) : part;
+    const Window all = grown(planes_ ? planes_->part() : Window{}, part, gbuffer.data);
     planes_ = journal.time("depth planes", [&] { return std::make_unique<DepthPlanes>(gbuffer, camera, all); });
   }
   return *planes_;
@@ -37,9 +48,10 @@ const std::vector<EdgePixel>& PictureDepth::edges(const GBuffer& gbuffer, const 
                                                   Journal& journal) {
   const Window part = partOf(gbuffer.data, area, 0);
   if (!holds(edgesOf_, part)) {
-    const DepthPlanes& known = planes(gbuffer, camera, area, journal);
-    edges_ = journal.time("edges", [&] { return edgePixels(gbuffer, known, part); });
-    edgesOf_ = part;
+    const Window all = grown(edgesOf_, part, gbuffer.data);
+    const DepthPlanes& known = planes(gbuffer, camera, inDisplay(all, gbuffer.data), journal);
+    edges_ = journal.time("edges", [&] { return edgePixels(gbuffer, known, all); });
+    edgesOf_ = all;
   }
   return edges_;
 }
