@@ -257,13 +257,15 @@ Compositor::Run Compositor::prepare(const Request& request) {
 // All of the picture, but where triangles alone are painted pixel by pixel.
 Window Compositor::paintedArea(const Plan& plan, const Run& run) const {
   const GBuffer& gbuffer = *run.lighting->picture.gbuffer;
-  const bool byPixels = plan.as<PaintSorted>() || plan.as<PaintListed>() ||
-                        (plan.as<PaintSums>() && !plan.isPublished() && !plan.resolvesOnDevice);
-  const bool alone = run.sources->trianglesAlone() && !run.lighting->fog && plan.lowResolution == 1;
+  const bool byLists = plan.as<PaintSorted>() || plan.as<PaintListed>();
+  const bool byPixels =
+      byLists || (plan.as<PaintSums>() && !plan.isPublished() && !plan.resolvesOnDevice && plan.lowResolution == 1);
+  const bool alone = run.sources->trianglesAlone() && !run.lighting->fog;
   if (!byPixels || !alone || plan.heldOut || shot_->deepOpaque) return gbuffer.data;
   Window area = screenBounds(shot_->scene, shot_->camera, gbuffer);
-  const int reach =
-      static_cast<int>(std::ceil(plan.pixelFilter.radius));  // places of a wide filter lie in other pixels
+  // Places of a wide filter lie in other pixels, and a texel is told to pixels up to two texels away.
+  const int reach = static_cast<int>(std::ceil(plan.pixelFilter.radius)) +
+                    (plan.lowResolution > 1 ? 2 * plan.lowResolution : 0);
   area.x0 = std::max(area.x0 - reach, gbuffer.data.x0);
   area.y0 = std::max(area.y0 - reach, gbuffer.data.y0);
   area.x1 = std::min(area.x1 + reach, gbuffer.data.x1);
@@ -280,7 +282,8 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
   // Bent rays may meet any of them.
   const std::unique_ptr<EdgePasses> edges = edgePasses(plan, run.sources->mayScatter(pass) ? data : area);
   if (area != data) pass.area = area;  // else passes at other resolutions take the settings too
-  PassPicture moving(run.lighting->picture, depthPlanes(plan, area), edges.get(), triangles(), shot_->camera, area);
+  const Window& known = plan.lowResolution > 1 ? data : area;  // texels anywhere ask for the surface at theirs
+  PassPicture moving(run.lighting->picture, depthPlanes(plan, known), edges.get(), triangles(), shot_->camera, known);
   if (unseen) moving.countUnseen();
   const PaintContext context{plan, *shot_, moving.picture(), *run.sources, device_, journal, counts};
   const std::unique_ptr<Painter> painter = makePainter(context);

@@ -44,8 +44,10 @@ Image<float> opaqueDepth(TransparentPass& pass, const PassSettings& full, const 
   return z;
 }
 
-LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettings& sample, int pass, Mixer& mixer,
+LowResolutionFragments lowLayersOf(const PaintContext& context, const PassSettings& painted, int pass, Mixer& mixer,
                                    PassStatistics& statistics) {
+  PassSettings sample = painted;
+  sample.area = {};  // it is told in pixels, not in texels
   const GBuffer& gbuffer = *context.picture.gbuffer;
   TransparentPass& triangles = *context.sources.triangles();
   triangles.over(*context.picture.centres, context.shot.camera);  // solids are drawn at pixel centres

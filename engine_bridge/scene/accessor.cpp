@@ -201,10 +201,11 @@ ElementType elementType(GltfFile& file, const JsonView& reference, std::initiali
   componentSize(componentType);
   type.component = componentType.unsignedInteger();
   type.normalised = accessor.boolean("normalized", false);
-  const bool allowed = integers == Integers::any || (integers == Integers::normalised && type.normalised);
+  if (integers == Integers::asNormalised && type.integer()) type.normalised = true;
+  const bool allowed = integers == Integers::any || (integers != Integers::none && type.normalised);
   if (type.integer() && (type.component == kUInt || !allowed)) {
     constexpr const char* kExpected[] = {"float (5126)", "float (5126) or normalised bytes or shorts",
-                                         "float (5126), bytes or shorts"};
+                                         "float (5126), bytes or shorts", "float (5126), bytes or shorts"};
     componentType.refuse(fmt::format("is {}{}; {} must be {}", type.component, type.normalised ? ", normalised" : "",
                                      reference.where(), kExpected[static_cast<int>(integers)]));
   }

@@ -9,7 +9,8 @@
 namespace pellucid::gltf {
 
 // Which integer components an attribute may have, next to floats. `any` with KHR_mesh_quantization only.
-enum class Integers { none, normalised, any };
+// `asNormalised`: bytes and shorts are parts of the largest, whether the file says so or not.
+enum class Integers { none, normalised, any, asNormalised };
 
 // What an accessor says that its elements are, checked.
 struct ElementType {

@@ -70,13 +70,14 @@ FileLoader::FileLoader(GltfFile& file, std::size_t fileIndex, const SceneOptions
       closedGlass_(file, options.closedGlass) {}
 
 void FileLoader::load() {
+  if (file_.hasRepairedText()) notes_.add("has text that is not UTF-8 and is read as Latin-1");
   const std::vector<PlacedNode> nodes = placeNodes(file_, options_.metresPerUnit, notes_);
   readMaterials(nodes);
   shows_.clear();
   readNow_.clear();
   firstInstance_ = scene_.instances.size();
   primitives_.startOver();
-  poses_.emplace(file_, nodes, options_.metresPerUnit);
+  poses_.emplace(file_, nodes, options_.metresPerUnit, notes_);
   for (const PlacedNode& node : nodes) placeMesh(node);
   poses_.reset();
   closedGlass_.apply(scene_, firstMaterial_, scene_.materials.size(), readNow_, notes_);

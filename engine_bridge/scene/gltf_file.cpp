@@ -6,6 +6,7 @@
 
 #include "engine_bridge/scene/meshopt.h"
 #include "engine_bridge/scene/uri.h"
+#include "engine_bridge/scene/utf8.h"
 #include "gbuffer/errors.h"
 
 namespace pellucid::gltf {
@@ -99,8 +100,10 @@ void GltfFile::parseJson(Bytes text) {
   if (nestedTooDeep(text)) {
     throw InputError(fmt::format("{}: JSON is nested deeper than {} levels", path_, kMostNesting));
   }
+  const std::optional<std::string> repaired = fromLatin1(text);
+  repairedText_ = repaired.has_value();
   try {
-    json_ = nlohmann::json::parse(text.begin(), text.end());
+    json_ = repaired ? nlohmann::json::parse(*repaired) : nlohmann::json::parse(text.begin(), text.end());
   } catch (const nlohmann::json::exception& error) {
     requireWhole();
     throw InputError(printable(fmt::format("{}: is not glTF: {}", path_, error.what())));

@@ -25,6 +25,9 @@ class GltfFile {
   const std::string& path() const { return path_; }
   JsonView root() const { return JsonView(json_, path_, ""); }
 
+  // Whether some of its text was no UTF-8 and has been read as Latin-1.
+  bool hasRepairedText() const { return repairedText_; }
+
   // Whether extensionsUsed names it.
   bool uses(const char* extension) const;
 
@@ -63,7 +66,7 @@ class GltfFile {
   std::shared_ptr<PageLedger> ledger_;
   SharedBytes content_;  // of the .gltf or .glb
   SharedBytes binary_;   // the BIN chunk of a .glb
-  bool hasBinary_ = false;
+  bool hasBinary_ = false, repairedText_ = false;
   nlohmann::json json_;
   std::map<std::size_t, SharedBytes> buffers_;
   std::map<std::string, SharedBytes> unpacked_;  // by the view's place in the file

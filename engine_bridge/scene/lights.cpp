@@ -13,12 +13,12 @@ constexpr const char* kExtension = "KHR_lights_punctual";
 constexpr float kMostIntensity = 1e15f;  // leaves room for products in float
 constexpr float kHalfPi = 1.57079633f;
 
-LightKind kindOf(const JsonView& type) {
-  const std::string& name = type.string();
+// Empty for a kind that the extension does not have.
+std::optional<LightKind> kindOf(const std::string& name) {
   if (name == "directional") return LightKind::directional;
   if (name == "point") return LightKind::point;
   if (name == "spot") return LightKind::spot;
-  type.refuse(fmt::format("is {}; expected directional, point or spot", name));
+  return std::nullopt;
 }
 
 }  // namespace
@@ -36,7 +36,14 @@ void readLights(const GltfFile& file, const std::vector<PlacedNode>& nodes, cons
     const JsonView source = available.at(reference.index(available.size(), "lights"));
     Light light;
     light.name = source.string("name", placed.name);
-    light.kind = kindOf(source.at("type"));
+    const std::string& type = source.at("type").string();
+    const std::optional<LightKind> kind = kindOf(type);
+    if (!kind) {
+      notes.add(fmt::format("light {}: is {}, which is none of directional, point and spot, and is left out",
+                            light.name, type));
+      continue;
+    }
+    light.kind = *kind;
     light.colour = source.colour("color", glm::vec3(1.0f), 0.0f, kMostIntensity, notes);
     const float photometric = source.number("intensity", 1.0f, 0.0f, kMostIntensity, notes);
     light.intensity = static_cast<float>(static_cast<double>(photometric) / options.lumensPerWatt);

@@ -134,4 +134,25 @@ std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, N
   return nodes;
 }
 
+glm::dmat4 worldBesideScene(const GltfFile& file, std::size_t node, double metresPerUnit, Notes& notes) {
+  const std::size_t count = file.count("nodes");
+  std::vector<std::size_t> parent(count, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::optional<JsonView> children = file.item("nodes", i).find("children");
+    for (std::size_t c = 0; children && c < children->size(); ++c) parent[children->at(c).index(count, "nodes")] = i;
+  }
+  glm::dmat4 world(1.0);
+  std::size_t steps = 0;
+  for (std::size_t at = node; at < count; at = parent[at]) {
+    const JsonView view = file.item("nodes", at);
+    if (++steps > count) view.refuse("is its own ancestor; expected a tree");
+    world = localMatrix(view, notes) * world;
+  }
+  glm::dmat4 metresFromUnits(metresPerUnit);
+  metresFromUnits[3][3] = 1.0;
+  world = metresFromUnits * world;
+  checkMagnitude(file.item("nodes", node), world);
+  return world;
+}
+
 }  // namespace pellucid::gltf

@@ -22,6 +22,9 @@ struct PlacedNode {
 // Throws InputError when a node is its own ancestor or has two parents, or a transform is not finite and affine.
 std::vector<PlacedNode> placeNodes(const GltfFile& file, double metresPerUnit, Notes& notes);
 
+// Of a node that the scene does not hold, metres. Throws InputError as placeNodes().
+glm::dmat4 worldBesideScene(const GltfFile& file, std::size_t node, double metresPerUnit, Notes& notes);
+
 // Throws InputError when a node's world transform leaves the range of magnitudes that float products stand.
 void checkMagnitude(const JsonView& node, const glm::dmat4& worldFromObject);
 

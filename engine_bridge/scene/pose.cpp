@@ -35,10 +35,10 @@ void store(Elements& elements, std::size_t i, glm::dvec3 value) {
 }
 
 void morph(GltfFile& file, const JsonView& primitive, const std::vector<double>& weights, bool quantised,
-           const PosedAttributes& posed) {
-  const JsonView targets = primitive.at("targets");
-  if (targets.size() != weights.size())
-    targets.refuse(fmt::format("are {}; the weights are {}", targets.size(), weights.size()));
+           const PosedAttributes& posed, PoseRepairs& repairs) {
+  const std::optional<JsonView> targets = primitive.find("targets");
+  const std::size_t count = targets ? targets->size() : 0;
+  if (count != weights.size()) ++repairs.otherWeights;
   const auto add = [&](const JsonView& target, const char* name, std::initializer_list<std::size_t> widths,
                        double weight, Integers integers, Elements* base) {
     const std::optional<JsonView> reference = target.find(name);
@@ -53,15 +53,15 @@ void morph(GltfFile& file, const JsonView& primitive, const std::vector<double>&
         value = static_cast<float>(static_cast<double>(value) + weight * static_cast<double>(moved.at(i, c)));
       }
   };
-  for (std::size_t k = 0; k < weights.size(); ++k) {
+  for (std::size_t k = 0; k < std::min(count, weights.size()); ++k) {
     if (weights[k] == 0.0) continue;
-    const JsonView target = targets.at(k);
+    const JsonView target = targets->at(k);
     const Integers units = quantised ? Integers::normalised : Integers::none;
     const Integers free = quantised ? Integers::any : Integers::none;
     add(target, "POSITION", {3}, weights[k], free, posed.positions);
     add(target, "NORMAL", {3}, weights[k], units, posed.normals);
     add(target, "TANGENT", {3}, weights[k], units, posed.tangents);
-    add(target, "COLOR_0", {3, 4}, weights[k], Integers::normalised, posed.colours);
+    add(target, "COLOR_0", {3, 4}, weights[k], Integers::asNormalised, posed.colours);
     const Integers mapped = quantised ? Integers::any : Integers::normalised;
     add(target, "TEXCOORD_0", {2}, weights[k], mapped, posed.uvs[0]);
     add(target, "TEXCOORD_1", {2}, weights[k], mapped, posed.uvs[1]);
@@ -80,7 +80,7 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
 }
 
 void bend(GltfFile& file, const JsonView& primitive, const std::vector<glm::dmat4>& joints, PosedAttributes& posed,
-          std::size_t& unbound) {
+          PoseRepairs& repairs) {
   Elements& positions = *posed.positions;
   posed.mirrored.assign(positions.count, false);
   const JsonView attributes = primitive.at("attributes");
@@ -110,7 +110,7 @@ void bend(GltfFile& file, const JsonView& primitive, const std::vector<glm::dmat
   for (std::size_t i = 0; i < positions.count; ++i) {
     const Blend& blend = blends[i];
     const bool bound = blend.weight > 0.0;
-    unbound += bound ? 0 : 1;
+    repairs.unbound += bound ? 0 : 1;
     const glm::dmat4 moved = bound ? blend.sum / blend.weight : joints[blend.first];
     store(positions, i, glm::dvec3(moved * glm::dvec4(vec3At(positions, i), 1.0)));
     const glm::dmat3 linear(moved);
@@ -129,10 +129,17 @@ void bend(GltfFile& file, const JsonView& primitive, const std::vector<glm::dmat
   }
 }
 
+bool hasJoints(const JsonView& mesh) {
+  const JsonView primitives = mesh.at("primitives");
+  for (std::size_t i = 0; i < primitives.size(); ++i)
+    if (primitives.at(i).at("attributes").find("JOINTS_0")) return true;
+  return false;
+}
+
 }  // namespace
 
-PoseReader::PoseReader(GltfFile& file, const std::vector<PlacedNode>& placed, double metresPerUnit)
-    : file_(&file), metresPerUnit_(metresPerUnit) {
+PoseReader::PoseReader(GltfFile& file, const std::vector<PlacedNode>& placed, double metresPerUnit, Notes& notes)
+    : file_(&file), metresPerUnit_(metresPerUnit), notes_(&notes) {
   for (const PlacedNode& node : placed) worldOf_.emplace(node.index, &node.worldFromObject);
 }
 
@@ -155,14 +162,18 @@ const std::vector<glm::dmat4>& PoseReader::jointsOf(const JsonView& node) {
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const std::size_t at = joints.at(k).index(file_->count("nodes"), "nodes");
     const auto world = worldOf_.find(at);
-    if (world == worldOf_.end()) joints.at(k).refuse(fmt::format("is {}, a node that the scene does not hold", at));
+    const bool stray = world == worldOf_.end();
+    if (stray)
+      notes_->add(fmt::format("{} is {}, a node that the scene does not hold; it stands where its parents place it",
+                              joints.at(k).where(), at));
     glm::dmat4 unitsFromMetres(1.0 / metresPerUnit_);
     unitsFromMetres[3][3] = 1.0;
     glm::dmat4 bind(1.0);
     for (int column = 0; inverse && column < 4; ++column)
       for (int row = 0; row < 3; ++row)
         bind[column][row] = static_cast<double>(inverse->at(k, static_cast<std::size_t>(column * 4 + row)));
-    result.push_back(unitsFromMetres * *world->second * bind);
+    result.push_back(unitsFromMetres *
+                     (stray ? worldBesideScene(*file_, at, metresPerUnit_, *notes_) : *world->second) * bind);
   }
   return skins_.emplace(index, std::move(result)).first->second;
 }
@@ -170,14 +181,17 @@ const std::vector<glm::dmat4>& PoseReader::jointsOf(const JsonView& node) {
 Pose PoseReader::of(const JsonView& node, const JsonView& mesh) {
   Pose pose;
   pose.weights = weightsOf(node, mesh);
-  if (node.find("skin")) pose.joints = jointsOf(node);
+  if (node.find("skin") && hasJoints(mesh))
+    pose.joints = jointsOf(node);
+  else if (node.find("skin"))
+    notes_->add(node.where() + " has a skin, and no primitive of its mesh has JOINTS_0: it stands where the node does");
   return pose;
 }
 
 void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, PosedAttributes& posed,
-               std::size_t& unbound) {
-  if (!pose.weights.empty()) morph(file, primitive, pose.weights, quantised, posed);
-  if (!pose.joints.empty()) bend(file, primitive, pose.joints, posed, unbound);
+               PoseRepairs& repairs) {
+  if (!pose.weights.empty()) morph(file, primitive, pose.weights, quantised, posed, repairs);
+  if (!pose.joints.empty()) bend(file, primitive, pose.joints, posed, repairs);
 }
 
 }  // namespace pellucid::gltf

@@ -22,9 +22,10 @@ struct Pose {
 class PoseReader {
  public:
   //   placed  outlives this
-  PoseReader(GltfFile& file, const std::vector<PlacedNode>& placed, double metresPerUnit);
-  // Of the mesh that a node draws. Throws InputError: a joint that is no node or stands in no scene, matrices that are
-  // damaged, weights that are not finite.
+  PoseReader(GltfFile& file, const std::vector<PlacedNode>& placed, double metresPerUnit, Notes& notes);
+  // Of the mesh that a node draws. A skin does nothing to a mesh without JOINTS_0, and joints that the scene does not
+  // hold stand where their parents place them; both are noted. Throws InputError: a joint that is no node, matrices
+  // that are damaged, weights that are not finite.
   Pose of(const JsonView& node, const JsonView& mesh);
 
  private:
@@ -32,8 +33,15 @@ class PoseReader {
 
   GltfFile* file_;
   double metresPerUnit_;
+  Notes* notes_;
   std::map<std::size_t, const glm::dmat4*> worldOf_;
   std::map<std::size_t, std::vector<glm::dmat4>> skins_;
+};
+
+// What was made of a pose that is not told whole.
+struct PoseRepairs {
+  std::size_t unbound = 0;       // vertices without any weight, which follow their first joint
+  std::size_t otherWeights = 0;  // primitives of another number of morph targets than of weights
 };
 
 // A primitive's vertices, which a pose moves. All but the positions may be null.
@@ -47,8 +55,8 @@ struct PosedAttributes {
 // Moves a primitive's vertices: morph targets first, then the skin.
 // Throws InputError: targets or weights that are damaged, joints beyond the skin.
 //   quantised  KHR_mesh_quantization is used
-//   unbound    counts vertices without any weight, which follow their first joint
+//   repairs    counted up
 void applyPose(GltfFile& file, const JsonView& primitive, const Pose& pose, bool quantised, PosedAttributes& posed,
-               std::size_t& unbound);
+               PoseRepairs& repairs);
 
 }  // namespace pellucid::gltf

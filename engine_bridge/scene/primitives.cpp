@@ -101,6 +101,16 @@ bool PrimitiveReader::hasVertices(const JsonView& primitive) {
   return positions && !empty;
 }
 
+// Exporters leave the word out of bytes that mean parts of 255; whole numbers up to 255 are nobody's colours.
+void PrimitiveReader::noteWholeColours(const JsonView& attributes) {
+  const std::optional<JsonView> reference = attributes.find("COLOR_0");
+  if (!reference) return;
+  constexpr std::size_t kFloat = 5126;
+  const JsonView accessor = file_->item("accessors", *reference);
+  if (accessor.unsignedInteger("componentType", kFloat) != kFloat && !accessor.boolean("normalized", false))
+    ++wholeColours_;
+}
+
 std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const Pose& pose, bool decode) {
   const std::size_t mode = primitive.unsignedInteger("mode", kTriangles);
   if (mode > kTriangleFan) primitive.at("mode").refuse(fmt::format("is {}; expected 0 to 6", mode));
@@ -125,7 +135,8 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const 
   Shared tangents = normals ? attribute(attributes, "TANGENT", {4}, turned, count) : nullptr;
   Shared uvs[2] = {attribute(attributes, "TEXCOORD_0", {2}, mapped, count),
                    attribute(attributes, "TEXCOORD_1", {2}, mapped, count)};
-  Shared colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::normalised, count);
+  Shared colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::asNormalised, count);
+  noteWholeColours(attributes);
   FileTriangles triangles;
   if (pose.moves()) {
     charge(count * (2 + pose.weights.size()), primitive);
@@ -135,7 +146,7 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const 
     posed.tangents = copied(tangents);
     posed.colours = copied(colours);
     for (std::size_t set = 0; set < 2; ++set) posed.uvs[set] = copied(uvs[set]);
-    applyPose(*file_, primitive, pose, quantised_, posed, unbound_);
+    applyPose(*file_, primitive, pose, quantised_, posed, repairs_);
     triangles.mirrored = std::move(posed.mirrored);
   }
   triangles.place = printable(file_->path() + ": " + primitive.where());
@@ -173,7 +184,8 @@ std::optional<Primitive> PrimitiveReader::points(const JsonView& primitive, cons
   file.positions = attribute(attributes, "POSITION", {3}, quantised_ ? Integers::any : Integers::none, 0);
   const std::size_t count = file.positions->count;
   file.radii = attribute(attributes, "_RADIUS", {1}, Integers::normalised, count);
-  file.colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::normalised, count);
+  file.colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::asNormalised, count);
+  noteWholeColours(attributes);
   if (const std::optional<JsonView> reference = primitive.find("indices")) {
     const auto indices = std::make_shared<const Indices>(placeIndices(*file_, *reference));
     for (std::size_t i = 0; i < indices->count; ++i) {
@@ -236,7 +248,10 @@ void PrimitiveReader::noteCounts() {
   note(faults_.nonFinite, "triangles have a position that is not finite and are left out");
   note(faults_.degenerate, "triangles have no area and are left out");
   note(faults_.repairedNormals, "normals have no direction and are replaced by the triangle's");
-  note(unbound_, "vertices of skins have no weight and follow their first joint");
+  note(repairs_.unbound, "vertices of skins have no weight and follow their first joint");
+  note(repairs_.otherWeights,
+       "primitives have another number of morph targets than of weights; what has no weight stands still");
+  note(wholeColours_, "primitives have whole numbers as COLOR_0, which are taken as parts of the largest");
   note(faults_.repairedValues, "vertex colours or texture coordinates are out of range and are clamped");
 }
 

@@ -40,6 +40,7 @@ class PrimitiveReader {
   using Shared = std::shared_ptr<const Elements>;
   Shared attribute(const JsonView& attributes, const char* name, std::initializer_list<std::size_t> widths,
                    Integers integers, std::size_t vertexCount);
+  void noteWholeColours(const JsonView& attributes);
   bool hasVertices(const JsonView& primitive);  // what lacks them, or indices that it names, is noted
   std::optional<Primitive> points(const JsonView& primitive, const Pose& pose);
   void readCorners(const JsonView& primitive, FileTriangles& triangles);
@@ -62,7 +63,8 @@ class PrimitiveReader {
   std::size_t charged_ = 0;              // elements decoded and made
   Faults faults_;
   PointFaults pointFaults_;
-  std::size_t lines_ = 0, withoutRadius_ = 0, unfinished_ = 0, unbound_ = 0;
+  std::size_t lines_ = 0, withoutRadius_ = 0, unfinished_ = 0, wholeColours_ = 0;
+  PoseRepairs repairs_;
 };
 
 // The same triangles seen from the other side: for instances whose transform mirrors.

@@ -381,8 +381,6 @@ TEST(Lights, DefaultsAndLumensPerWatt) {
 }
 
 TEST(Lights, BrokenOnes) {
-  Builder unknown = lightBuilder({{"type", "area"}}, Json::object());
-  expectRefusal(refusalOf(unknown), 3, {"area"});
   Builder none = lightBuilder({{"type", "point"}}, Json::object());
   none.json.erase("extensions");
   expectRefusal(refusalOf(none), 3, {"light"});

@@ -31,8 +31,6 @@ TEST(Morph, WeightsOfTheNodeThenOfTheMesh) {
   EXPECT_EQ(vertex(0).normal, glm::vec3(0, 0, 1));
   EXPECT_EQ(vertex(1).position, glm::vec3(4, 0, 0));
   EXPECT_LT(glm::length(vertex(1).normal - glm::normalize(glm::vec3(1, 0, 1))), 1e-6f);
-  builder.json["nodes"][1]["weights"] = {1};
-  expectRefusal(refusalOf(builder), 3, {"targets", "are 2", "are 1"});
   builder.json["nodes"][1]["weights"] = {1, 1};
   builder.json.erase("buffers");
   builder.json["meshes"][0]["primitives"][0]["targets"][0]["POSITION"] = builder.floats({0, 0, 0}, "VEC3", 3);
@@ -158,10 +156,6 @@ TEST(Skin, DamageIsRefused) {
                   b.json["skins"][0]["joints"] = {1, 2, 2};
                 }),
                 3, {"inverseBindMatrices", "are 2", "3 joints"});
-  expectRefusal(changed([](Builder& b) {
-                  b.json["scenes"] = {{{"nodes", {0, 1}}}};
-                }),
-                3, {"joints[1]", "the scene does not hold"});
   expectRefusal(changed([](Builder& b) { b.json["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0"); }), 3,
                 {"WEIGHTS_0"});
   Builder unbound = skinned();
