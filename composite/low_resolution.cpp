@@ -365,12 +365,20 @@ template <class PlaceOf>
 FragmentLists LowResolutionFragments::amongThose(const FragmentLists& lists, const PlaceOf& placeOf) const {
   constexpr std::size_t kAtOnce = std::size_t{1} << 15;  // pixels
   FragmentLists one, result = emptyLike(lists);
+  std::size_t joined = 0;
   one.resize(1, layers_);
   result.offsets.reserve(lists.offsets.size());
   result.fragments.reserve(lists.fragments.size());
   for (std::size_t first = 0; first < lists.solid.size(); first += kAtOnce) {
     const std::size_t end = std::min(first + kAtOnce, lists.solid.size());
     const std::vector<Added> added = addedTo(lists, placeOf, first, end);
+    for (const Added& own : added) joined += own.isThere ? std::max<std::size_t>(own.runs.size(), 1) : 0;
+    // As many as there will be, if the others get as many as these: doubling would hold three times what is needed.
+    const std::size_t expected =
+        lists.fragments.size() +
+        static_cast<std::size_t>(1.05 * static_cast<double>(joined) * static_cast<double>(lists.solid.size()) /
+                                 static_cast<double>(end));
+    if (result.fragments.capacity() < lists.fragments.size() + joined) result.fragments.reserve(expected);
     for (std::size_t pixel = first; pixel < end; ++pixel) {
       result.append(lists, lists.offsets[pixel], lists.offsets[pixel + 1]);
       append(added[pixel - first], lists.solid[pixel].a, one, result);
