@@ -264,8 +264,8 @@ Window Compositor::paintedArea(const Plan& plan, const Run& run) const {
   if (!byPixels || !alone || plan.heldOut || shot_->deepOpaque) return gbuffer.data;
   Window area = screenBounds(shot_->scene, shot_->camera, gbuffer);
   // Places of a wide filter lie in other pixels, and a texel is told to pixels up to two texels away.
-  const int reach = static_cast<int>(std::ceil(plan.pixelFilter.radius)) +
-                    (plan.lowResolution > 1 ? 2 * plan.lowResolution : 0);
+  const int reach =
+      static_cast<int>(std::ceil(plan.pixelFilter.radius)) + (plan.lowResolution > 1 ? 2 * plan.lowResolution : 0);
   area.x0 = std::max(area.x0 - reach, gbuffer.data.x0);
   area.y0 = std::max(area.y0 - reach, gbuffer.data.y0);
   area.x1 = std::min(area.x1 + reach, gbuffer.data.x1);
@@ -281,7 +281,7 @@ Veil Compositor::paint(const Plan& plan, const PassSettings& settings, const Run
   const Window area = motion.moves() ? data : paintedArea(plan, run);
   // Bent rays may meet any of them.
   const std::unique_ptr<EdgePasses> edges = edgePasses(plan, run.sources->mayScatter(pass) ? data : area);
-  if (area != data) pass.area = area;  // else passes at other resolutions take the settings too
+  if (area != data) pass.area = area;                          // else passes at other resolutions take the settings too
   const Window& known = plan.lowResolution > 1 ? data : area;  // texels anywhere ask for the surface at theirs
   PassPicture moving(run.lighting->picture, depthPlanes(plan, known), edges.get(), triangles(), shot_->camera, known);
   if (unseen) moving.countUnseen();

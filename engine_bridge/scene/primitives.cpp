@@ -102,13 +102,14 @@ bool PrimitiveReader::hasVertices(const JsonView& primitive) {
 }
 
 // Exporters leave the word out of bytes that mean parts of 255; whole numbers up to 255 are nobody's colours.
-void PrimitiveReader::noteWholeColours(const JsonView& attributes) {
+PrimitiveReader::Shared PrimitiveReader::vertexColours(const JsonView& attributes, std::size_t vertexCount) {
   const std::optional<JsonView> reference = attributes.find("COLOR_0");
-  if (!reference) return;
+  if (!reference) return nullptr;
   constexpr std::size_t kFloat = 5126;
   const JsonView accessor = file_->item("accessors", *reference);
   if (accessor.unsignedInteger("componentType", kFloat) != kFloat && !accessor.boolean("normalized", false))
     ++wholeColours_;
+  return attribute(attributes, "COLOR_0", {3, 4}, Integers::asNormalised, vertexCount);
 }
 
 std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const Pose& pose, bool decode) {
@@ -135,8 +136,7 @@ std::optional<Primitive> PrimitiveReader::read(const JsonView& primitive, const 
   Shared tangents = normals ? attribute(attributes, "TANGENT", {4}, turned, count) : nullptr;
   Shared uvs[2] = {attribute(attributes, "TEXCOORD_0", {2}, mapped, count),
                    attribute(attributes, "TEXCOORD_1", {2}, mapped, count)};
-  Shared colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::asNormalised, count);
-  noteWholeColours(attributes);
+  Shared colours = vertexColours(attributes, count);
   FileTriangles triangles;
   if (pose.moves()) {
     charge(count * (2 + pose.weights.size()), primitive);
@@ -184,8 +184,7 @@ std::optional<Primitive> PrimitiveReader::points(const JsonView& primitive, cons
   file.positions = attribute(attributes, "POSITION", {3}, quantised_ ? Integers::any : Integers::none, 0);
   const std::size_t count = file.positions->count;
   file.radii = attribute(attributes, "_RADIUS", {1}, Integers::normalised, count);
-  file.colours = attribute(attributes, "COLOR_0", {3, 4}, Integers::asNormalised, count);
-  noteWholeColours(attributes);
+  file.colours = vertexColours(attributes, count);
   if (const std::optional<JsonView> reference = primitive.find("indices")) {
     const auto indices = std::make_shared<const Indices>(placeIndices(*file_, *reference));
     for (std::size_t i = 0; i < indices->count; ++i) {

@@ -40,7 +40,7 @@ class PrimitiveReader {
   using Shared = std::shared_ptr<const Elements>;
   Shared attribute(const JsonView& attributes, const char* name, std::initializer_list<std::size_t> widths,
                    Integers integers, std::size_t vertexCount);
-  void noteWholeColours(const JsonView& attributes);
+  Shared vertexColours(const JsonView& attributes, std::size_t vertexCount);  // null where there are none
   bool hasVertices(const JsonView& primitive);  // what lacks them, or indices that it names, is noted
   std::optional<Primitive> points(const JsonView& primitive, const Pose& pose);
   void readCorners(const JsonView& primitive, FileTriangles& triangles);
