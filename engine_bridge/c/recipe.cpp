@@ -1,5 +1,4 @@
 // The C boundary of recipes: null pointers, versions and exceptions stop here.
-#include <climits>
 #include <cstring>
 
 #include "engine_bridge/c/built_recipe.h"
@@ -14,6 +13,7 @@ using namespace pellucid::c;
 namespace {
 
 constexpr int kMostPixels = 65536;  // of a side
+
 bool isSize(int32_t width, int32_t height) {
   return width >= 1 && height >= 1 && width <= kMostPixels && height <= kMostPixels;
 }

@@ -6,8 +6,6 @@
 namespace pellucid::c {
 namespace {
 
-constexpr uint32_t kMostBinding = 1u << 20;  // as far as any device goes; sums of them stay numbers
-
 bool isVersionOf(pld_dialect dialect, int32_t version) {
   switch (dialect) {
     case PLD_DIALECT_GL:
