@@ -27,7 +27,7 @@
        could be misused in silence is refused, and to hosts of before said as a warning.           \
        0.6: pld_frame.weight_reference. 0.7: PLD_METHOD_OVER, PLD_FEATURE_OUTPUTS,                 \
        PLD_FLAG_TRUST_TEXTURES. 0.9: recipe.h. 0.14: PLD_FEATURE_DEPTHS, _MOTION and _IDENTITY,    \
-       pld_frame.depth_opacity; shadow maps in recipe.h.                                           \
+       pld_frame.depth_opacity. 0.15: shadow maps in recipe.h.                                     \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)

@@ -18,7 +18,7 @@
    No pass reads an image that it writes.
 
    Shadow maps of transparent casters have a recipe of their own, whose passes draw one face of one light: see
-   pld_shadow_recipe_create(). Since 0.14. */
+   pld_shadow_recipe_create(). Since 0.15. */
 #ifndef PELLUCID_RECIPE_H
 #define PELLUCID_RECIPE_H
 
