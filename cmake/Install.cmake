@@ -12,6 +12,7 @@ install(TARGETS pellucid_c EXPORT pellucid-c
 install(DIRECTORY engine_bridge/include/pellucid DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(EXPORT pellucid-c NAMESPACE pellucid:: DESTINATION ${config_folder} COMPONENT dev)
 install(FILES LICENSE engine_bridge/INTEGRATION.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT docs)
+install(FILES tests/bridge/outside/outside.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT docs)
 
 configure_package_config_file(cmake/pellucidConfig.cmake.in ${CMAKE_BINARY_DIR}/pellucidConfig.cmake INSTALL_DESTINATION ${config_folder})
 # While the major version is 0, a minor one may ask a host for another line.

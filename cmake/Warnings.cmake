@@ -1,8 +1,13 @@
 # Every room is built with these. Contraction is off so that CPU and GL can agree bit for bit.
 add_library(pellucid_options INTERFACE)
-target_compile_options(pellucid_options INTERFACE
-  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror;-Werror=double-promotion;-Werror=float-conversion>"
-  -ffp-contract=off -fno-fast-math)
+# Errors for those who work on the code; whoever builds it may have a compiler that warns of more.
+option(PELLUCID_WERROR "Warnings are errors" OFF)
+if(PELLUCID_WERROR)
+  set(warnings "-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror;-Werror=double-promotion;-Werror=float-conversion")
+else()
+  set(warnings "-Wall;-Wextra;-Wpedantic;-Wshadow;-Wdouble-promotion;-Wfloat-conversion")
+endif()
+target_compile_options(pellucid_options INTERFACE "$<BUILD_INTERFACE:${warnings}>" -ffp-contract=off -fno-fast-math)
 target_compile_features(pellucid_options INTERFACE cxx_std_20)
 target_include_directories(pellucid_options INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/pellucid-rooms>)

@@ -18,6 +18,29 @@ bool names(uint32_t fields, pld_fixed field) {
   return (fields & static_cast<uint32_t>(field)) != 0;
 }
 
+// How device depth changes with the distance from the eye, by its sign.
+float depthGrowth(const float (&projection)[16]) {
+  return isPerspective(projection) ? -projection[14] : -projection[10];
+}
+
+// A projection that contradicts the convention leaves no layer: each fails its depth test.
+pld_status checkConvention(const FrameJudge& judge, const char* call, const pld_frame& frame) {
+  const pld_depth depth = judge.permutation.depth;
+  const float growth = depthGrowth(frame.projection);
+  if (!judge.isHostSince15 || depth == PLD_DEPTH_LINEAR) return PLD_OK;
+  if (depth == PLD_DEPTH_DEVICE && growth < 0.0f)
+    return judge.fail(PLD_ERROR_ARGUMENT,
+                      "%s: frame.projection: found depth that falls with distance, expected one that grows: info.depth "
+                      "is PLD_DEPTH_DEVICE",
+                      call);
+  if (depth == PLD_DEPTH_REVERSED && growth > 0.0f)
+    return judge.fail(PLD_ERROR_ARGUMENT,
+                      "%s: frame.projection: found depth that grows with distance, expected one that falls: info.depth "
+                      "is PLD_DEPTH_REVERSED",
+                      call);
+  return PLD_OK;
+}
+
 pld_status checkProjection(const FrameJudge& judge, const char* call, const pld_frame& frame) {
   for (const float x : frame.projection)
     if (!std::isfinite(x))
@@ -27,7 +50,7 @@ pld_status checkProjection(const FrameJudge& judge, const char* call, const pld_
                       "%s: frame.projection: expected perspective with w = -z, or orthographic, by columns", call);
   if (frame.projection[0] == 0.0f || frame.projection[5] == 0.0f)
     return judge.fail(PLD_ERROR_ARGUMENT, "%s: frame.projection: a focal length of 0", call);
-  return PLD_OK;
+  return checkConvention(judge, call, frame);
 }
 
 enum class Range { positive, notNegative, any };

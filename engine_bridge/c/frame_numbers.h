@@ -16,7 +16,7 @@ bool takeWhole(const pld_frame& frame, pld_frame& whole);
 // By whom a frame is judged, and where the sentence goes. Nothing is allocated.
 struct FrameJudge {
   const Permutation& permutation;
-  bool isHostSince5;  // hosts of 0.4 and earlier were asked less
+  bool isHostSince5, isHostSince15;  // earlier hosts were asked less
   char* message;
   std::size_t size;
 

@@ -184,7 +184,9 @@ const StageParts& stageParts(const std::string& file) {
   for (const std::string_view part : shaderParts(file)) {
     auto one = read.find(part.data());
     if (one == read.end()) {
-      const std::string text = withoutLooseUniforms("\n" + std::string(part)).substr(1);
+      std::string whole(1, '\n');
+      whole += part;
+      const std::string text = withoutLooseUniforms(whole).substr(1);
       one = read.try_emplace(part.data(), text, changesInStages).first;
     }
     parts.push_back(&one->second);

@@ -153,15 +153,22 @@ pld_status pld_pass::checkOrder(pld_stage stage) {
                        static_cast<int>(stage));
   const uint32_t needed = stagesOf(device.permutation), bit = 1u << stage, before = needed & (bit - 1);
   if (!(needed & bit))
-    return device.fail(PLD_ERROR_ORDER, "pld_begin: this pass has no stage %d", static_cast<int>(stage));
+    return device.fail(PLD_ERROR_ORDER, "pld_begin: this pass has no %s: its method and features ask for none",
+                       nameOf(stage));
   if (before != 0 && (stagesDone_ & before) != before)
-    return device.fail(PLD_ERROR_ORDER, "pld_begin: stage %d comes after those before it", static_cast<int>(stage));
+    return device.fail(PLD_ERROR_ORDER, "pld_begin: %s comes after those before it", nameOf(stage));
   if (before != 0 && (stagesDone_ & bit))
-    return device.fail(PLD_ERROR_ORDER, "pld_begin: stage %d again in one frame", static_cast<int>(stage));
+    return device.fail(PLD_ERROR_ORDER, "pld_begin: %s again in one frame", nameOf(stage));
   return PLD_OK;
 }
 
 pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
+  const pld_status status = beginStage(stage, frame);
+  beginFailed_ = status != PLD_OK;
+  return status;
+}
+
+pld_status pld_pass::beginStage(pld_stage stage, const pld_frame& frame) {
   if (const pld_status status = checkOrder(stage); status != PLD_OK) return status;
   GLenum attachment = 0;
   if (const pld_status status = checkFrame(device, frame, width_, height_, attachment); status != PLD_OK) return status;
@@ -179,7 +186,9 @@ pld_status pld_pass::begin(pld_stage stage, const pld_frame& frame) {
 }
 
 pld_status pld_pass::end() {
-  if (step_ != Step::open) return device.fail(PLD_ERROR_ORDER, "pld_end: without a pld_begin");
+  if (step_ != Step::open)
+    return device.fail(PLD_ERROR_ORDER, beginFailed_ ? "pld_end: the last pld_begin failed, and nothing was begun"
+                                                     : "pld_end: without a pld_begin");
   // A stage that was misused is drawn all the same: the picture shows what the sentence says.
   const pld_status seen = validation_.endStage(stages_.stage());
   bool whole = false;
@@ -194,7 +203,9 @@ pld_status pld_pass::resolve(const pld_target& target) {
     return device.fail(PLD_ERROR_ORDER, "pld_resolve: between pld_shadow_begin and pld_shadow_end");
   const bool ofShadows = isOfShadows(target.view);
   if (!ofShadows && (step_ != Step::drawn || stagesDone_ != stagesOf(device.permutation)))
-    return device.fail(PLD_ERROR_ORDER, "pld_resolve: before all stages of a frame have met their pld_end");
+    return device.fail(PLD_ERROR_ORDER, beginFailed_
+                                            ? "pld_resolve: the last pld_begin failed, and its frame is not drawn"
+                                            : "pld_resolve: before all stages of a frame have met their pld_end");
   if (const pld_status status = views_.check(target, stages_.frame()); status != PLD_OK) return status;
   // Views of the same planes may follow; the next frame begins with its first stage.
   if (!ofShadows) return views_.resolve(target, stages_.frame(), width_);

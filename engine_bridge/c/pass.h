@@ -36,6 +36,7 @@ struct pld_pass {
   pld_status makeTextures(int width, int height);
   void releaseTextures();
   pld_status checkOrder(pld_stage stage);
+  pld_status beginStage(pld_stage stage, const pld_frame& frame);
   pld_status queryTimes(pld_value what, uint64_t& value);
   pld_status queryPlane(pld_value what, uint64_t& value);
 
@@ -50,6 +51,7 @@ struct pld_pass {
   pellucid::c::Validation validation_{device, casters_};
 
   Step step_ = Step::sizeless;
+  bool beginFailed_ = false;    // the last pld_begin
   int width_ = 0, height_ = 0;  // of pld_resize()
   uint32_t stagesDone_ = 0;     // bits of the frame's
 };

@@ -168,7 +168,7 @@ std::string stageBlockText(const std::vector<StageNumber>& stage, const std::str
   for (const StageNumber number : stage) {
     const NumberShape shape = shapeOf(number);
     text += std::string("  ") + shape.type + " " + shape.name;
-    if (shape.count > 1) text += "[" + std::to_string(shape.count) + "]";
+    if (shape.count > 1) text.append("[").append(std::to_string(shape.count)).append("]");
     text += ";\n";
   }
   return text + "};\n";

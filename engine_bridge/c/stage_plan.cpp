@@ -4,6 +4,12 @@
 
 namespace pellucid::c {
 
+const char* nameOf(pld_stage stage) {
+  static constexpr const char* names[] = {"PLD_STAGE_SOLIDS", "PLD_STAGE_FRONT", "PLD_STAGE_LAYERS",
+                                          "PLD_STAGE_RIMS",   "PLD_STAGE_LOW",   "PLD_STAGE_CASTERS"};
+  return names[stage];
+}
+
 uint32_t stagesOf(const Permutation& p) {
   uint32_t stages = 1u << PLD_STAGE_LAYERS;
   if (p.has(PLD_FEATURE_SOLIDS)) stages |= 1u << PLD_STAGE_SOLIDS;

@@ -7,6 +7,8 @@
 namespace pellucid::c {
 
 constexpr int kStages = 5;  // of pld_stage
+// As messages call a stage.
+const char* nameOf(pld_stage stage);
 
 // Bits 1 << pld_stage.
 uint32_t stagesOf(const Permutation& permutation);

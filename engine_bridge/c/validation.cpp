@@ -7,9 +7,6 @@
 namespace pellucid::c {
 namespace {
 
-constexpr const char* kSeams[kStages] = {"the seam of PLD_STAGE_SOLIDS", "the seam of PLD_STAGE_FRONT",
-                                         "the seam of PLD_STAGE_LAYERS", "the seam of PLD_STAGE_RIMS",
-                                         "the seam of PLD_STAGE_LOW"};
 constexpr const char* kFrame = "PldFrame";
 
 }  // namespace
@@ -27,8 +24,11 @@ void Validation::destroy() {
 
 void Validation::nameTexts() {
   if (!isOn()) return;
-  for (int stage = 0; stage < kStages; ++stage)
-    marks_[stage] = seamMark(device_.permutation, static_cast<pld_stage>(stage));
+  for (int k = 0; k < kStages; ++k) {
+    const auto stage = static_cast<pld_stage>(k);
+    marks_[k] = seamMark(device_.permutation, stage);
+    seams_[k] = std::string("the seam of ") + nameOf(stage);
+  }
 }
 
 void Validation::begin(Units units, Storage storage) {
@@ -73,7 +73,7 @@ pld_status Validation::endStage(pld_stage stage) {
   const bool drawn = drewSomething();
   const pld_status status = checkState("pld_end");
   if (status != PLD_OK || !drawn) return status;
-  return checkProgram({"pld_end", kFrame, marks_[stage].c_str(), kSeams[stage]});
+  return checkProgram({"pld_end", kFrame, marks_[stage].c_str(), seams_[stage].c_str()});
 }
 
 pld_status Validation::endFace() {
@@ -94,7 +94,7 @@ bool Validation::holds(GLuint program, const char* mark) const {
 // Which text of this pass a program holds; null for none that it knows.
 const char* Validation::otherText(GLuint program) const {
   for (int stage = 0; stage < kStages; ++stage)
-    if (holds(program, marks_[stage].c_str())) return kSeams[stage];
+    if (holds(program, marks_[stage].c_str())) return seams_[stage].c_str();
   if (device_.gl.GetUniformBlockIndex(program, kFrame) != GL_INVALID_INDEX)
     return "the seam of another pass, or of before pld_fix()";
   if (holds(program, casterMark(true)) || holds(program, casterMark(false))) return "PLD_SHADOW_TEXT_CASTER";

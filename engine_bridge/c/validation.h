@@ -46,8 +46,8 @@ class Validation {
 
   Device& device_;
   const CasterMaps& casters_;
-  std::string marks_[kStages];
-  SavedState begun_;  // as the host's draws found it
+  std::string marks_[kStages], seams_[kStages];  // by which a program is known to hold a seam; as messages call it
+  SavedState begun_;                             // as the host's draws found it
   Units units_;
   Storage storage_;
   GLuint drawn_ = 0;  // counts primitives

@@ -20,7 +20,7 @@
 
 #define PLD_VERSION_MAJOR 0
 #define PLD_VERSION_MINOR                                                                          \
-  14 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,        \
+  15 /* 0.2: shadow maps, rims, low resolution. 0.3: pld_fix(). 0.4: views of those of 0.2,        \
        rims in the published tier and with PLD_METHOD_FRONT_TAIL, low resolution that scatters,    \
        the exact tier; refraction and diffusion without PLD_FEATURE_LIGHT keep no light that adds, \
        which is implied for hosts of before. 0.5: PLD_FLAG_VALIDATE, pld_create_info.message; what \
