@@ -4,15 +4,15 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
+#include <vulkan/vulkan_format_traits.hpp>
 
 #include "samples/engine/engine_scene.h"
 
 namespace engine {
 namespace {
-
-using Usage = vk::ImageUsageFlagBits;
 
 int said = 0;
 
@@ -31,121 +31,121 @@ vk::ImageAspectFlags aspectOf(vk::Format format) {
   return isDepth(format) ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
 }
 
+vk::raii::Instance makeInstance(const vk::raii::Context& context, const void* layers) {
+  const vk::ApplicationInfo application{.apiVersion = VK_API_VERSION_1_3};
+  const char* const layer = "VK_LAYER_KHRONOS_validation";
+  const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  return {context, vk::InstanceCreateInfo{.pNext = layers, .pApplicationInfo = &application}
+                       .setPEnabledLayerNames(layer)
+                       .setPEnabledExtensionNames(extension)};
+}
+
+// Lists in fragment shaders and sums in double precision are the exact tier's.
+vk::raii::Device makeDevice(const vk::raii::PhysicalDevice& physical) {
+  const vk::PhysicalDeviceVulkan13Features newer{.synchronization2 = true, .dynamicRendering = true};
+  const vk::PhysicalDeviceFeatures features{
+      .independentBlend = true, .fragmentStoresAndAtomics = true, .shaderFloat64 = true};
+  const float priority = 1.0f;
+  const char* const extension = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+  const auto queue = vk::DeviceQueueCreateInfo{}.setQueuePriorities(priority);  // family 0 draws on every device
+  return {physical, vk::DeviceCreateInfo{.pNext = &newer, .pEnabledFeatures = &features}
+                        .setQueueCreateInfos(queue)
+                        .setPEnabledExtensionNames(extension)};
+}
+
 }  // namespace
 
 int validationMessages() {
   return said;
 }
 
+vk::RenderingAttachmentInfo target(vk::ImageView view, vk::AttachmentLoadOp load, const vk::ClearValue& clear) {
+  return {.imageView = view,
+          .imageLayout = vk::ImageLayout::eGeneral,
+          .loadOp = load,
+          .storeOp = vk::AttachmentStoreOp::eStore,
+          .clearValue = clear};
+}
+
 Gpu::Gpu() {
-  glslang::InitializeProcess();
-  const vk::ApplicationInfo application("engine", 1, nullptr, 0, VK_API_VERSION_1_3);
-  const char* const layer = "VK_LAYER_KHRONOS_validation";
-  const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
   using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
-  using Kind = vk::DebugUtilsMessageTypeFlagBitsEXT;
-  const vk::DebugUtilsMessengerCreateInfoEXT messenger({}, Severity::eWarning | Severity::eError, Kind::eValidation,
-                                                       hear);
+  glslang::InitializeProcess();
+  const vk::DebugUtilsMessengerCreateInfoEXT messenger{.messageSeverity = Severity::eWarning | Severity::eError,
+                                                       .messageType = vk::DebugUtilsMessageTypeFlagBitsEXT::eValidation,
+                                                       .pfnUserCallback = hear};
   const auto synchronisation = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
-  const vk::ValidationFeaturesEXT features(1, &synchronisation, 0, nullptr, &messenger);
-  instance_ = vk::createInstanceUnique({{}, &application, 1, &layer, 1, &extension, &features});
-  loader_ = vk::DispatchLoaderDynamic(*instance_, vkGetInstanceProcAddr);
-  messenger_ = instance_->createDebugUtilsMessengerEXTUnique(messenger, nullptr, loader_);
-  makeDevice();
-  commands_ = device_->createCommandPoolUnique({});
-  nearest_ = device_->createSamplerUnique(vk::SamplerCreateInfo()
-                                              .setAddressModeU(vk::SamplerAddressMode::eClampToEdge)
-                                              .setAddressModeV(vk::SamplerAddressMode::eClampToEdge));
-  constexpr uint32_t sets = 128;
-  const vk::DescriptorPoolSize sizes[] = {{vk::DescriptorType::eCombinedImageSampler, 16 * sets},
-                                          {vk::DescriptorType::eUniformBuffer, sets},
-                                          {vk::DescriptorType::eStorageBuffer, 6 * sets}};
-  pool_ = device_->createDescriptorPoolUnique({{}, sets, sizes});
-}
-
-Gpu::~Gpu() {
-  glslang::FinalizeProcess();
-}
-
-// The first device of version 1.3; lists in fragment shaders and sums in double precision are the exact tier's.
-void Gpu::makeDevice() {
-  for (const vk::PhysicalDevice one : instance_->enumeratePhysicalDevices())
-    if (!physical_ && one.getProperties().apiVersion >= VK_API_VERSION_1_3) physical_ = one;
-  if (!physical_) stop("no device with Vulkan 1.3");
+  const auto layers = vk::ValidationFeaturesEXT{.pNext = &messenger}.setEnabledValidationFeatures(synchronisation);
+  instance_ = makeInstance(context_, &layers);
+  messenger_ = {instance_, messenger};
+  for (const vk::raii::PhysicalDevice& one : instance_.enumeratePhysicalDevices())
+    if (!*physical_ && one.getProperties().apiVersion >= VK_API_VERSION_1_3) physical_ = one;
+  if (!*physical_) stop("no device with Vulkan 1.3");
   std::printf("%s\n", physical_.getProperties().deviceName.data());
-  vk::PhysicalDeviceVulkan13Features newer;
-  newer.setDynamicRendering(true).setSynchronization2(true);
-  const auto features =
-      vk::PhysicalDeviceFeatures().setIndependentBlend(true).setFragmentStoresAndAtomics(true).setShaderFloat64(true);
-  const float priority = 1.0f;
-  const vk::DeviceQueueCreateInfo queue({}, 0, 1, &priority);  // family 0 draws on every device that can
-  device_ = physical_.createDeviceUnique(vk::DeviceCreateInfo({}, queue, {}, {}, &features, &newer));
+  device_ = makeDevice(physical_);
+  commands_ = {device_, vk::CommandPoolCreateInfo{}};
+  constexpr auto edge = vk::SamplerAddressMode::eClampToEdge;
+  vk::SamplerCreateInfo sampler{.addressModeU = edge, .addressModeV = edge};
+  nearest_ = {device_, sampler};
+  sampler.magFilter = sampler.minFilter = vk::Filter::eLinear;
+  sampler.mipmapMode = vk::SamplerMipmapMode::eLinear;
+  sampler.maxLod = VK_LOD_CLAMP_NONE;
+  smooth_ = {device_, sampler};
 }
 
-vk::DeviceMemory Gpu::memory(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted) {
+vk::raii::DeviceMemory Gpu::memory(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted) const {
   const vk::PhysicalDeviceMemoryProperties all = physical_.getMemoryProperties();
-  uint32_t type = 0;
-  while (type < all.memoryTypeCount &&
-         !((needs.memoryTypeBits >> type & 1u) && (all.memoryTypes[type].propertyFlags & wanted) == wanted))
-    ++type;
-  if (type == all.memoryTypeCount) stop("no memory of the kind that is wanted");
-  return *memories_.emplace_back(device_->allocateMemoryUnique({needs.size, type}));
+  for (uint32_t type = 0; type < all.memoryTypeCount; ++type)
+    if (needs.memoryTypeBits >> type & 1u && (all.memoryTypes[type].propertyFlags & wanted) == wanted)
+      return {device_, vk::MemoryAllocateInfo{.allocationSize = needs.size, .memoryTypeIndex = type}};
+  stop("no memory of the kind that is wanted");
 }
 
-GpuImage Gpu::image(vk::Format format, int width, int height, uint32_t layers) {
-  GpuImage made;
-  made.format = format;
-  made.width = static_cast<uint32_t>(width);
-  made.height = static_cast<uint32_t>(height);
+GpuImage Gpu::image(vk::Format format, vk::Extent2D extent, uint32_t layers, uint32_t levels) {
+  using Usage = vk::ImageUsageFlagBits;
   const auto drawn = isDepth(format) ? Usage::eDepthStencilAttachment : Usage::eColorAttachment;
-  made.image = *images_.emplace_back(device_->createImageUnique(
-      vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {made.width, made.height, 1}, 1, layers)
-          .setUsage(Usage::eSampled | Usage::eTransferSrc | drawn)));
-  device_->bindImageMemory(
-      made.image, memory(device_->getImageMemoryRequirements(made.image), vk::MemoryPropertyFlagBits::eDeviceLocal), 0);
+  vk::raii::Image image(
+      device_, vk::ImageCreateInfo{.imageType = vk::ImageType::e2D,
+                                   .format = format,
+                                   .extent = {extent.width, extent.height, 1},
+                                   .mipLevels = levels,
+                                   .arrayLayers = layers,
+                                   .usage = Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst | drawn});
+  auto at = memory(image.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal);
+  image.bindMemory(keep(std::move(at)), 0);
+  GpuImage made{.image = keep(std::move(image)), .format = format, .extent = extent};
   const auto view = [&](vk::ImageViewType type, uint32_t first, uint32_t count) {
-    return *views_.emplace_back(
-        device_->createImageViewUnique({{}, made.image, type, format, {}, {aspectOf(format), 0, 1, first, count}}));
+    return keep(vk::raii::ImageView(
+        device_, vk::ImageViewCreateInfo{.image = made.image,
+                                         .viewType = type,
+                                         .format = format,
+                                         .subresourceRange = {aspectOf(format), 0, levels, first, count}}));
   };
   for (uint32_t i = 0; i < layers; ++i) made.layers.push_back(view(vk::ImageViewType::e2D, i, 1));
   made.whole = layers > 1 ? view(vk::ImageViewType::e2DArray, 0, layers) : made.layers[0];
-  run([&](vk::CommandBuffer commands) {  // into the one layout that serves all uses, where it stays
-    vk::ImageMemoryBarrier2 barrier;
-    barrier.setDstStageMask(vk::PipelineStageFlagBits2::eAllCommands)
-        .setNewLayout(vk::ImageLayout::eGeneral)
-        .setImage(made.image)
-        .setSubresourceRange({aspectOf(format), 0, 1, 0, layers});
-    commands.pipelineBarrier2({{}, {}, {}, barrier});
+  run([&](const Commands& to) {  // into the one layout that serves all uses, where it stays
+    const vk::ImageMemoryBarrier2 barrier{.dstStageMask = vk::PipelineStageFlagBits2::eAllCommands,
+                                          .newLayout = vk::ImageLayout::eGeneral,
+                                          .image = made.image,
+                                          .subresourceRange = {aspectOf(format), 0, levels, 0, layers}};
+    to.pipelineBarrier2(vk::DependencyInfo{}.setImageMemoryBarriers(barrier));
   });
   return made;
 }
 
-GpuBuffer Gpu::buffer(vk::DeviceSize size, vk::BufferUsageFlags usage) {
-  GpuBuffer made;
-  made.size = size;
-  made.buffer = *buffers_.emplace_back(device_->createBufferUnique(
-      {{}, size, usage | vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst}));
-  const vk::DeviceMemory at =
-      memory(device_->getBufferMemoryRequirements(made.buffer),
-             vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent);
-  device_->bindBufferMemory(made.buffer, at, 0);
-  made.mapped = static_cast<char*>(device_->mapMemory(at, 0, VK_WHOLE_SIZE));
-  return made;
+GpuBuffer Gpu::buffer(vk::BufferUsageFlags usage, vk::DeviceSize size, const void* filled) {
+  using Usage = vk::BufferUsageFlagBits;
+  using Memory = vk::MemoryPropertyFlagBits;
+  vk::raii::Buffer buffer(
+      device_, vk::BufferCreateInfo{.size = size, .usage = usage | Usage::eTransferSrc | Usage::eTransferDst});
+  auto at = memory(buffer.getMemoryRequirements(), Memory::eHostVisible | Memory::eHostCoherent);
+  buffer.bindMemory(*at, 0);
+  auto* const mapped = static_cast<char*>(at.mapMemory(0, VK_WHOLE_SIZE));
+  if (filled) std::memcpy(mapped, filled, size);
+  keep(std::move(at));
+  return {keep(std::move(buffer)), size, mapped};
 }
 
-vk::DescriptorSetLayout Gpu::setLayout(const std::vector<Binding>& bindings) {
-  std::vector<vk::DescriptorSetLayoutBinding> places;
-  for (const Binding& one : bindings)
-    places.emplace_back(one.place, one.type, 1, vk::ShaderStageFlagBits::eAllGraphics);
-  return *setLayouts_.emplace_back(device_->createDescriptorSetLayoutUnique({{}, places}));
-}
-
-vk::PipelineLayout Gpu::pipelineLayout(const std::vector<vk::DescriptorSetLayout>& sets) {
-  const vk::PushConstantRange pushed(vk::ShaderStageFlagBits::eAllGraphics, 0, kPushedBytes);
-  return *layouts_.emplace_back(device_->createPipelineLayoutUnique({{}, sets, pushed}));
-}
-
-vk::UniqueShaderModule Gpu::compile(const std::string& text, bool vertex) {
+vk::raii::ShaderModule Gpu::compile(const std::string& text, bool vertex) const {
   const EShLanguage stage = vertex ? EShLangVertex : EShLangFragment;
   const auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
   glslang::TShader shader(stage);
@@ -159,41 +159,58 @@ vk::UniqueShaderModule Gpu::compile(const std::string& text, bool vertex) {
   if (!program.link(rules)) stop(program.getInfoLog());
   std::vector<uint32_t> words;
   glslang::GlslangToSpv(*program.getIntermediate(stage), words);
-  return device_->createShaderModuleUnique({{}, words});
+  return {device_, vk::ShaderModuleCreateInfo{}.setCode(words)};
 }
 
-vk::Pipeline Gpu::pipeline(const PipelineShape& shape) {
+GpuPipeline Gpu::pipeline(const PipelineShape& shape) {
   using Stage = vk::ShaderStageFlagBits;
-  const vk::UniqueShaderModule vertex = compile(shape.vertex, true), fragment = compile(shape.fragment, false);
-  const vk::PipelineShaderStageCreateInfo stages[] = {{{}, Stage::eVertex, *vertex, "main"},
-                                                      {{}, Stage::eFragment, *fragment, "main"}};
-  const vk::VertexInputBindingDescription binding(0, sizeof(Vertex));
-  const vk::VertexInputAttributeDescription attributes[] = {{0, 0, vk::Format::eR32G32B32Sfloat, 0},
-                                                            {1, 0, vk::Format::eR32G32B32Sfloat, sizeof(glm::vec3)}};
-  const vk::PipelineVertexInputStateCreateInfo input({}, shape.meshes, &binding, shape.meshes ? 2 : 0, attributes);
-  const vk::PipelineInputAssemblyStateCreateInfo assembly({}, vk::PrimitiveTopology::eTriangleList);
-  const vk::PipelineViewportStateCreateInfo viewport({}, 1, nullptr, 1, nullptr);
-  const auto raster = vk::PipelineRasterizationStateCreateInfo().setLineWidth(1.0f);
+  using Format = vk::Format;
+  std::vector<vk::DescriptorSetLayoutBinding> places;
+  for (const Binding& one : shape.bindings) places.push_back({one.place, one.type, 1, Stage::eAllGraphics});
+  constexpr auto pushed = vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR;
+  const vk::DescriptorSetLayout set = keep(
+      vk::raii::DescriptorSetLayout(device_, vk::DescriptorSetLayoutCreateInfo{.flags = pushed}.setBindings(places)));
+  const vk::PushConstantRange constants{Stage::eAllGraphics, 0, 128};
+  const vk::PipelineLayout layout = keep(vk::raii::PipelineLayout(
+      device_, vk::PipelineLayoutCreateInfo{}.setSetLayouts(set).setPushConstantRanges(constants)));
+
+  const vk::raii::ShaderModule vertex = compile(shape.vertex, true), fragment = compile(shape.fragment, false);
+  const vk::PipelineShaderStageCreateInfo stages[] = {
+      {.stage = Stage::eVertex, .module = *vertex, .pName = "main"},
+      {.stage = Stage::eFragment, .module = *fragment, .pName = "main"}};
+  const vk::VertexInputBindingDescription binding{.stride = sizeof(Vertex)};
+  const vk::VertexInputAttributeDescription attributes[] = {
+      {0, 0, Format::eR32G32B32Sfloat, offsetof(Vertex, position)},
+      {1, 0, Format::eR32G32B32Sfloat, offsetof(Vertex, normal)},
+      {2, 0, Format::eR32G32B32A32Sfloat, offsetof(Vertex, colour)},
+      {3, 0, Format::eR32G32Sfloat, offsetof(Vertex, uv)}};
+  vk::PipelineVertexInputStateCreateInfo input;
+  if (shape.meshes) input.setVertexBindingDescriptions(binding).setVertexAttributeDescriptions(attributes);
+  const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
+  const vk::PipelineViewportStateCreateInfo viewport{.viewportCount = 1, .scissorCount = 1};
+  const vk::PipelineRasterizationStateCreateInfo raster{.lineWidth = 1.0f};
   const vk::PipelineMultisampleStateCreateInfo samples;
-  const vk::PipelineDepthStencilStateCreateInfo depth({}, shape.depth != vk::Format::eUndefined, shape.writesDepth,
-                                                      shape.compare);
-  const vk::PipelineColorBlendStateCreateInfo blend({}, false, {}, shape.blends);
+  const vk::PipelineDepthStencilStateCreateInfo depth{.depthTestEnable = shape.depth != Format::eUndefined,
+                                                      .depthWriteEnable = shape.writesDepth,
+                                                      .depthCompareOp = shape.compare};
+  const auto blend = vk::PipelineColorBlendStateCreateInfo{}.setAttachments(shape.blends);
   const vk::DynamicState dynamics[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor,
                                        vk::DynamicState::eCullMode, vk::DynamicState::eFrontFace};
-  const vk::PipelineDynamicStateCreateInfo dynamic({}, dynamics);
-  const vk::PipelineRenderingCreateInfo targets(0, shape.colours, shape.depth);
-  const vk::GraphicsPipelineCreateInfo info({}, stages, &input, &assembly, nullptr, &viewport, &raster, &samples,
-                                            &depth, &blend, &dynamic, shape.layout, {}, 0, {}, 0, &targets);
-  return *pipelines_.emplace_back(device_->createGraphicsPipelineUnique({}, info).value);
-}
-
-vk::DescriptorSet Gpu::descriptorSet(vk::DescriptorSetLayout layout, const std::vector<Binding>& bindings) {
-  const vk::DescriptorSet set = device_->allocateDescriptorSets({*pool_, layout})[0];
-  for (const Binding& one : bindings) {
-    const vk::DescriptorImageInfo image(*nearest_, one.view, vk::ImageLayout::eGeneral);
-    device_->updateDescriptorSets(vk::WriteDescriptorSet(set, one.place, 0, 1, one.type, &image, &one.part), {});
-  }
-  return set;
+  const auto dynamic = vk::PipelineDynamicStateCreateInfo{}.setDynamicStates(dynamics);
+  const auto targets =
+      vk::PipelineRenderingCreateInfo{.depthAttachmentFormat = shape.depth}.setColorAttachmentFormats(shape.colours);
+  const auto info = vk::GraphicsPipelineCreateInfo{.pNext = &targets,
+                                                   .pVertexInputState = &input,
+                                                   .pInputAssemblyState = &assembly,
+                                                   .pViewportState = &viewport,
+                                                   .pRasterizationState = &raster,
+                                                   .pMultisampleState = &samples,
+                                                   .pDepthStencilState = &depth,
+                                                   .pColorBlendState = &blend,
+                                                   .pDynamicState = &dynamic,
+                                                   .layout = layout}
+                        .setStages(stages);
+  return {layout, keep(vk::raii::Pipeline(device_, nullptr, info))};
 }
 
 bool Gpu::blends(vk::Format format) const {
@@ -201,45 +218,64 @@ bool Gpu::blends(vk::Format format) const {
   return static_cast<bool>(features & vk::FormatFeatureFlagBits::eColorAttachmentBlend);
 }
 
-void Gpu::run(const std::function<void(vk::CommandBuffer)>& record) {
-  const auto all = device_->allocateCommandBuffersUnique({*commands_, vk::CommandBufferLevel::ePrimary, 1});
-  const vk::CommandBuffer commands = *all[0];
-  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+void Gpu::begin(const Commands& to, const GpuPipeline& pipeline, const Targets& into,
+                const std::vector<Binding>& bindings) const {
+  waitForWrites(to);
+  to.beginRendering(
+      vk::RenderingInfo{.renderArea = into.area, .layerCount = 1, .pDepthAttachment = &into.depth}.setColorAttachments(
+          into.colours));
+  const vk::Extent2D extent = into.area.extent;
+  to.setViewport(0, vk::Viewport{static_cast<float>(into.area.offset.x), static_cast<float>(into.area.offset.y),
+                                 static_cast<float>(extent.width), static_cast<float>(extent.height), 0.0f, 1.0f});
+  to.setScissor(0, into.area);
+  to.setCullMode(vk::CullModeFlagBits::eNone);
+  to.setFrontFace(vk::FrontFace::eCounterClockwise);
+  to.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline.pipeline);
+  for (const Binding& one : bindings) {
+    const vk::DescriptorImageInfo image{*(one.smooth ? smooth_ : nearest_), one.view, vk::ImageLayout::eGeneral};
+    to.pushDescriptorSetKHR(vk::PipelineBindPoint::eGraphics, pipeline.layout, 0,
+                            vk::WriteDescriptorSet{.dstBinding = one.place,
+                                                   .descriptorCount = 1,
+                                                   .descriptorType = one.type,
+                                                   .pImageInfo = &image,
+                                                   .pBufferInfo = &one.part});
+  }
+}
+
+void Gpu::run(const std::function<void(const Commands&)>& record) const {
+  const vk::raii::CommandBuffers all(device_, {.commandPool = *commands_, .commandBufferCount = 1});
+  const Commands& commands = all[0];
+  commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   record(commands);
   waitForWrites(commands);
   commands.end();
-  const vk::Queue queue = device_->getQueue(0, 0);
-  queue.submit(vk::SubmitInfo({}, {}, commands));
+  const vk::raii::Queue queue = device_.getQueue(0, 0);
+  queue.submit(vk::SubmitInfo{}.setCommandBuffers(*commands));
   queue.waitIdle();
 }
 
 std::vector<float> Gpu::read(const GpuImage& image) {
-  const std::size_t bytes = vk::blockSize(image.format) * std::size_t{image.width} * image.height;
-  const GpuBuffer copy = buffer(bytes, {});
-  run([&](vk::CommandBuffer commands) {
-    const vk::BufferImageCopy region(0, 0, 0, {aspectOf(image.format), 0, 0, 1}, {}, {image.width, image.height, 1});
-    commands.copyImageToBuffer(image.image, vk::ImageLayout::eGeneral, copy.buffer, region);
+  const vk::Extent2D extent = image.extent;
+  const std::size_t bytes = vk::blockSize(image.format) * std::size_t{extent.width} * extent.height;
+  const GpuBuffer copy = buffer({}, bytes);
+  run([&](const Commands& to) {
+    const vk::BufferImageCopy region{.imageSubresource = {aspectOf(image.format), 0, 0, 1},
+                                     .imageExtent = {extent.width, extent.height, 1}};
+    to.copyImageToBuffer(image.image, vk::ImageLayout::eGeneral, copy.buffer, region);
   });
   std::vector<float> texels(bytes / sizeof(float));
   std::memcpy(texels.data(), copy.mapped, bytes);
   return texels;
 }
 
-void waitForWrites(vk::CommandBuffer commands) {
+void waitForWrites(const Commands& to) {
   using Stage = vk::PipelineStageFlagBits2;
   using Access = vk::AccessFlagBits2;
-  const vk::MemoryBarrier2 barrier(Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllCommands | Stage::eHost,
-                                   Access::eMemoryRead | Access::eMemoryWrite | Access::eHostRead);
-  commands.pipelineBarrier2({{}, barrier});
-}
-
-void setArea(vk::CommandBuffer commands, vk::Rect2D area) {
-  commands.setViewport(
-      0, vk::Viewport(static_cast<float>(area.offset.x), static_cast<float>(area.offset.y),
-                      static_cast<float>(area.extent.width), static_cast<float>(area.extent.height), 0.0f, 1.0f));
-  commands.setScissor(0, area);
-  commands.setCullMode(vk::CullModeFlagBits::eNone);
-  commands.setFrontFace(vk::FrontFace::eCounterClockwise);
+  const vk::MemoryBarrier2 barrier{.srcStageMask = Stage::eAllCommands,
+                                   .srcAccessMask = Access::eMemoryWrite,
+                                   .dstStageMask = Stage::eAllCommands | Stage::eHost,
+                                   .dstAccessMask = Access::eMemoryRead | Access::eMemoryWrite | Access::eHostRead};
+  to.pipelineBarrier2(vk::DependencyInfo{}.setMemoryBarriers(barrier));
 }
 
 }  // namespace engine

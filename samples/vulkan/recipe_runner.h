@@ -12,44 +12,38 @@ class RecipeRunner {
  public:
   // What the host draws its transparent geometry with.
   struct Material {
-    std::string vertex, fragment;  // GLSL; of the fragment stage what stands behind the seam
-    vk::DescriptorSetLayout set;   // its own, 0; the recipe was made for set 1
+    std::string vertex, fragment;   // GLSL; of the fragment stage what stands behind the seam
+    std::vector<Binding> bindings;  // others than the recipe's
   };
 
   //   images     by role, of the largest picture's size
   //   fragments  room of each stage's lists, where the recipe keeps some
-  RecipeRunner(Gpu& gpu, const pld_recipe* recipe, int width, int height, std::map<pld_role, GpuImage> images,
-               uint64_t fragments, const Material& material);
+  RecipeRunner(Gpu& gpu, const pld_recipe* recipe, vk::Extent2D extent, std::map<pld_role, GpuImage> images,
+               uint64_t fragments, Material material);
 
   // Records a frame.
-  //   draw  the meshes, with pipeline and set 1 bound, and the layout for set 0
-  using Draw = std::function<void(vk::CommandBuffer, vk::PipelineLayout)>;
-  void record(vk::CommandBuffer commands, const pld_frame& frame, const Draw& draw);
+  //   draw  the meshes of a stage into an area, all else being bound
+  using Draw = std::function<void(const Commands&, const GpuPipeline&, pld_stage, vk::Rect2D)>;
+  void record(const Commands& to, const pld_frame& frame, const Draw& draw);
   // After it ran: whether every list had room.
   bool hadRoom() const;
 
  private:
-  struct Pass {
-    vk::DescriptorSetLayout setLayout;
-    vk::PipelineLayout layout;
-    vk::Pipeline pipeline;
-  };
-
-  Pass passOf(const pld_recipe_pass& pass, const Material& material);
+  GpuPipeline pipelineOf(const pld_recipe_pass& pass);
   std::vector<Binding> bindingsOf(const pld_recipe_pass& pass, uint32_t repeat, vk::DeviceSize constants) const;
-  void run(vk::CommandBuffer commands, uint32_t index, uint32_t repeat, vk::Rect2D area, vk::DeviceSize constants,
+  Targets targetsOf(const pld_recipe_pass& pass, uint32_t repeat, vk::Rect2D area) const;
+  void run(const Commands& to, uint32_t index, uint32_t repeat, vk::Rect2D area, vk::DeviceSize constants,
            const Draw& draw);
-  void emptyLists(vk::CommandBuffer commands, const pld_recipe_pass& pass);
-  void beginRendering(vk::CommandBuffer commands, const pld_recipe_pass& pass, uint32_t repeat, vk::Rect2D area);
 
   Gpu& gpu_;
   const pld_recipe* recipe_;
-  int width_, height_;
+  vk::Extent2D extent_;
   uint64_t fragments_;
+  Material material_;
   std::vector<GpuImage> images_;
   std::vector<GpuBuffer> buffers_;
   std::vector<vk::DeviceSize> zeroed_;
-  std::vector<Pass> passes_;
+  std::vector<GpuPipeline> pipelines_;
   GpuBuffer constants_, counts_;  // of every pass and repeat; fragments that came, a word for each pass
 };
 
