@@ -1,8 +1,9 @@
 #include "engine_bridge/c/built_recipe.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "engine_bridge/c/plan_builder.h"
+#include "engine_bridge/c/caster_table.h"
 #include "engine_bridge/c/recipe_numbers.h"
 #include "shaders/plane_defines.h"
 
@@ -43,10 +44,17 @@ uint32_t usageOf(const PlannedPass& pass, uint32_t image) {
 
 }  // namespace
 
-pld_recipe::pld_recipe(const Permutation& of, const pld_recipe_info& info)
-    : permutation(of), plan(recipePlan(permutation, {info.clip})) {
+pld_recipe::pld_recipe(const Permutation& of, RecipePlan planned, const pld_recipe_info& info)
+    : permutation(of), plan(std::move(planned)) {
   addImages();
-  for (int i = 0; i < listBlocks(permutation); ++i) buffers.push_back({listName(permutation, i)});
+  if (plan.isOfMaps()) {
+    const pld_shadow_info& maps = plan.maps;
+    lookup = shadowText({maps.lights, maps.faces, edgeOf(maps), channelsOf(maps)}, targetOf(info, true),
+                        {static_cast<int>(maps.uniform_binding), static_cast<int>(maps.texture_unit)});
+    lookupHash = hashOf(lookup);
+  } else {
+    for (int i = 0; i < listBlocks(permutation); ++i) buffers.push_back({listName(permutation, i)});
+  }
   kept_.resize(plan.passes.size());
   for (std::size_t i = 0; i < kept_.size(); ++i) addPass(plan.passes[i], kept_[i], info);
   addLives();
@@ -62,6 +70,21 @@ void pld_recipe::addImages() {
     std::copy(planned.clear.begin(), planned.clear.end(), image.clear);
     images.push_back(image);
   }
+}
+
+// What the host's shaders hold.
+void pld_recipe::addSeam(const PlannedPass& planned, Kept& kept, const pld_recipe_info& info, pld_recipe_pass& pass) {
+  const GlslTarget target = targetOf(info, true);
+  pass.constants_binding = info.uniform_binding;
+  if (plan.isOfMaps()) {
+    pass.constants_size = sizeof(CasterBlock);
+    pass.constants_block = "PldShadowFrame";
+    kept.fragment = casterText(plan.maps.coloured != 0, target, placesOf(info));
+    return;
+  }
+  pass.constants_size = kSeamFloats * sizeof(float);
+  pass.constants_block = "PldFrame";
+  kept.fragment = seamText(permutation, planned.stage, target, placesOf(info));
 }
 
 void pld_recipe::addPass(const PlannedPass& planned, Kept& kept, const pld_recipe_info& info) {
@@ -90,10 +113,7 @@ void pld_recipe::addPass(const PlannedPass& planned, Kept& kept, const pld_recip
   pass.depth_write = planned.writesDepth ? 1 : 0;
   pass.set = static_cast<uint32_t>(target.set);
   if (draws) {
-    pass.constants_binding = info.uniform_binding;
-    pass.constants_size = kSeamFloats * sizeof(float);
-    pass.constants_block = "PldFrame";
-    kept.fragment = seamText(permutation, planned.stage, target, placesOf(info));
+    addSeam(planned, kept, info, pass);
   } else {
     pass.constants_binding = kNumbersBinding;
     pass.constants_size = static_cast<uint32_t>(sizeOfStageBlock(planned.numbers));
@@ -118,5 +138,6 @@ void pld_recipe::addLives() {
       image.last_pass = pass;
       image.usage |= usage;
     }
+    if (plan.images[i].isMaps()) image.usage |= PLD_USAGE_READ;  // by lookups
   }
 }

@@ -8,7 +8,7 @@
 
 struct pld_recipe {
   // Of checked choices.
-  pld_recipe(const pellucid::c::Permutation& permutation, const pld_recipe_info& info);
+  pld_recipe(const pellucid::c::Permutation& permutation, pellucid::c::RecipePlan plan, const pld_recipe_info& info);
   pld_recipe(const pld_recipe&) = delete;
   pld_recipe& operator=(const pld_recipe&) = delete;
 
@@ -17,6 +17,8 @@ struct pld_recipe {
   std::vector<pld_recipe_image> images;
   std::vector<pld_recipe_buffer> buffers;
   std::vector<pld_recipe_pass> passes;
+  std::string lookup;  // of shadow maps
+  uint64_t lookupHash = 0;
 
  private:
   // What a pass points to.
@@ -27,6 +29,7 @@ struct pld_recipe {
   };
 
   void addImages();
+  void addSeam(const pellucid::c::PlannedPass& planned, Kept& kept, const pld_recipe_info& info, pld_recipe_pass& pass);
   void addPass(const pellucid::c::PlannedPass& planned, Kept& kept, const pld_recipe_info& info);
   void addLives();
 

@@ -1,10 +1,9 @@
-// Whether what a host asks of shadow maps can be kept: one sentence for each thing that cannot.
+// Whether what a host asks of shadow maps can be kept on its device: numbers, textures and places.
 #pragma once
+#include "engine_bridge/c/caster_judge.h"
 #include "engine_bridge/c/pass_device.h"
 
 namespace pellucid::c {
-
-constexpr int kMostFaces = 96;
 
 pld_status checkMaps(Device& device, const pld_shadow_info& info);
 //   room        of the maps

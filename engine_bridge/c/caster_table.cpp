@@ -37,6 +37,14 @@ int channelsOf(const pld_shadow_info& info) {
   return info.coloured ? 3 : 1;
 }
 
+CasterBlock casterBlock(const pld_shadow_info& info, const pld_shadow_view& view) {
+  const bool naive = info.form == PLD_SHADOW_NAIVE || info.form == PLD_SHADOW_PUBLISHED;
+  const DepthMetric metric = metricOf(view);
+  return {{static_cast<float>(metric.scale), static_cast<float>(metric.shift),
+           view.kind == PLD_LIGHT_LOCAL ? 1.0f : 0.0f, naive ? 1.0f : 0.0f},
+          {shading::mapSeedOf(info.seed, static_cast<uint32_t>(view.light), static_cast<uint32_t>(slotOf(view)))}};
+}
+
 shading::ShadowFace faceRow(const pld_shadow_info& info, const pld_shadow_view& view, double rows) {
   const int edge = edgeOf(info), channels = channelsOf(info);
   shading::ShadowFace face = shading::shadowFaceOf(matrixOf(view.projection) * matrixOf(view.light_from_scene),

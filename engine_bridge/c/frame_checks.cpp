@@ -11,14 +11,8 @@ FrameJudge judgeOf(Device& device) {
   return {device.permutation, device.isHostSince(5), device.message, sizeof(device.message)};
 }
 
-// To the log too.
-pld_status told(const Device& device, pld_status status) {
-  if (status != PLD_OK) device.say(PLD_LOG_ERROR, device.message);
-  return status;
-}
-
 pld_status checkLow(Device& device, const pld_frame& frame) {
-  return told(device, judgeLow(judgeOf(device), kBegin, frame));
+  return device.told(judgeLow(judgeOf(device), kBegin, frame));
 }
 
 pld_status checkOcclusion(Device& device, const pld_frame& frame) {
@@ -32,7 +26,7 @@ pld_status checkOcclusion(Device& device, const pld_frame& frame) {
   if (open.width < frame.width || open.height < frame.height)
     return device.fail(PLD_ERROR_SIZE, "%s: occlusion_texture is %dx%d, expected at least the frame's %dx%d", kBegin,
                        open.width, open.height, frame.width, frame.height);
-  return told(device, judgeOcclusion(judgeOf(device), kBegin, frame));
+  return device.told(judgeOcclusion(judgeOf(device), kBegin, frame));
 }
 
 pld_status checkTextures(Device& device, const pld_frame& frame, GLenum& attachment) {
@@ -65,7 +59,7 @@ pld_status checkTextures(Device& device, const pld_frame& frame, GLenum& attachm
 }  // namespace
 
 pld_status checkNumbers(Device& device, const char* call, const pld_frame& frame, uint32_t fields) {
-  return told(device, judgeNumbers(judgeOf(device), call, frame, fields));
+  return device.told(judgeNumbers(judgeOf(device), call, frame, fields));
 }
 
 pld_status checkFrame(Device& device, const pld_frame& frame, int width, int height, GLenum& attachment) {
@@ -73,9 +67,9 @@ pld_status checkFrame(Device& device, const pld_frame& frame, int width, int hei
     return device.fail(PLD_ERROR_SIZE, "%s: frame: found %dx%d, expected at most pld_resize()'s %dx%d", kBegin,
                        frame.width, frame.height, width, height);
   if (const pld_status status = checkNumbers(device, kBegin, frame, kEveryField); status != PLD_OK) return status;
-  if (const pld_status status = told(device, judgeOpacity(judgeOf(device), kBegin, frame)); status != PLD_OK)
+  if (const pld_status status = device.told(judgeOpacity(judgeOf(device), kBegin, frame)); status != PLD_OK)
     return status;
-  if (const pld_status status = told(device, judgeFixed(judgeOf(device), kBegin, "pld_fix()", frame)); status != PLD_OK)
+  if (const pld_status status = device.told(judgeFixed(judgeOf(device), kBegin, "pld_fix()", frame)); status != PLD_OK)
     return status;
   if (device.trusts()) {
     attachment = device.knownAttachment;

@@ -30,6 +30,11 @@ void Device::say(pld_log_level level, const char* text) const {
   if (info.log) info.log(info.log_user, level, text);
 }
 
+pld_status Device::told(pld_status status) const {
+  if (status != PLD_OK) say(PLD_LOG_ERROR, message);
+  return status;
+}
+
 pld_status Device::failTexture(const char* call, const char* field, GLuint name) {
   return fail(PLD_ERROR_TEXTURE, "%s: %s %u is %s: expected a GL_TEXTURE_2D of this context", call, field, name,
               kindOf(gl, name));
@@ -143,6 +148,23 @@ GLuint Device::makeTexture(GLenum format, int width, int height, int bits, uint6
   return name;
 }
 
+GLuint Device::makeArray(GLenum format, int width, int height, int layers, int bits, uint64_t& bytes) const {
+  GLint bound = 0;
+  GLuint name = 0;
+  gl.GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &bound);
+  gl.GenTextures(1, &name);
+  gl.BindTexture(GL_TEXTURE_2D_ARRAY, name);
+  gl.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, static_cast<GLint>(format), width, height, layers, 0, GL_RGBA, GL_FLOAT,
+                nullptr);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    gl.TexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
+  gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, 0);
+  gl.BindTexture(GL_TEXTURE_2D_ARRAY, static_cast<GLuint>(bound));
+  bytes += static_cast<uint64_t>(bits) / 8 * static_cast<uint64_t>(width) * static_cast<uint64_t>(height) *
+           static_cast<uint64_t>(layers);
+  return name;
+}
+
 void Device::releaseTexture(GLuint& name) const {
   if (name) gl.DeleteTextures(1, &name);
   name = 0;
@@ -161,6 +183,11 @@ void Device::releaseFrame(GLuint& frame) const {
 void Device::attach(GLuint frame, GLenum attachment, GLuint texture) const {
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
   gl.FramebufferTexture2D(GL_DRAW_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
+}
+
+void Device::attachLayer(GLuint frame, GLenum attachment, GLuint array, int layer) const {
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+  gl.FramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, attachment, array, 0, layer);
 }
 
 bool Device::isComplete() const {

@@ -31,6 +31,8 @@ class Device {
   // Says why, to the message and to the log.
   [[gnu::format(printf, 3, 4)]] pld_status fail(pld_status status, const char* format, ...);
   void say(pld_log_level level, const char* text) const;
+  // Of what a judge has written to the message: to the log too, unless the status is PLD_OK.
+  pld_status told(pld_status status) const;
   // Of a texture for which factsOf() is false.
   pld_status failTexture(const char* call, const char* field, GLuint name);
 
@@ -60,10 +62,13 @@ class Device {
   void drawEverywhere();  // over the whole viewport, with the program in use
   // Level 0 alone; adds what it takes to `bytes`. The host's unpack buffer is unbound: see Room.
   GLuint makeTexture(GLenum format, int width, int height, int bits, uint64_t& bytes) const;
+  // The same with layers. The array that was bound comes back.
+  GLuint makeArray(GLenum format, int width, int height, int layers, int bits, uint64_t& bytes) const;
   void releaseTexture(GLuint& name) const;
   void makeFrame(GLuint& frame) const;
   void releaseFrame(GLuint& frame) const;
   void attach(GLuint frame, GLenum attachment, GLuint texture) const;
+  void attachLayer(GLuint frame, GLenum attachment, GLuint array, int layer) const;
   bool isComplete() const;                              // the bound draw framebuffer
   void allowColours(GLuint first, bool written) const;  // draw buffers from `first` on
 

@@ -146,6 +146,11 @@ void PlanRunner::begin(const pld_frame& frame, int width) {
   bound_.fill(0);
 }
 
+void PlanRunner::beginFace(int layer) {
+  begin({}, 0);
+  faceLayer_ = layer;
+}
+
 void PlanRunner::setPlain(const PassArea& area) {
   if (!isPlain_) setPlainDrawing(device_.gl, area.width, area.height);
   if (isPlain_ || area.x != 0 || area.y != 0) setViewportTo(device_.gl, area.x, area.y, area.width, area.height);
@@ -153,7 +158,13 @@ void PlanRunner::setPlain(const PassArea& area) {
 }
 
 void PlanRunner::bindFrame(const PlannedPass& pass) const {
-  if (const GLuint frame = textures_.frame(pass)) device_.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+  const GLuint frame = textures_.frame(pass);
+  if (!frame) return;
+  device_.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+  for (const pld_recipe_attachment& one : pass.attachments)
+    if (one.layer == PLD_LAYER_OF_FACE)
+      device_.attachLayer(frame, GL_COLOR_ATTACHMENT0 + one.location, textures_.texture(one.image),
+                          faceLayer_ + static_cast<int>(one.location));
 }
 
 void PlanRunner::clear(const PlannedPass& pass) const {

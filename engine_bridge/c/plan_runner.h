@@ -27,6 +27,9 @@ class PlanRunner {
 
   // Before the first pass of several, between which nothing but this draws.
   void begin(const pld_frame& frame, int width);
+  // Likewise, of a face of shadow maps.
+  //   layer  of the maps, that of the face's first channel
+  void beginFace(int layer);
   // A full-screen pass, as often as the frame repeats it. Where the host's target is drawn to, it is bound.
   void run(const PlannedPass& pass, int view = 0);
   // Of draws: the framebuffer; what of its planes is cleared; how they are blended and what is tested against.
@@ -63,7 +66,7 @@ class PlanRunner {
   std::vector<std::size_t> programOf_;  // of each pass
   // Of the passes since begin().
   pld_frame frame_{};
-  int width_ = 0;
+  int width_ = 0, faceLayer_ = 0;
   bool isPlain_ = false;
   std::array<GLuint, kMostUnits> bound_{};  // of what is bound since begin()
 };

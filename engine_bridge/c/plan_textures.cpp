@@ -38,8 +38,12 @@ bool PlanTextures::make(int width, int height) {
   for (uint32_t i = 0; i < textures_.size(); ++i) {
     const PlannedImage& image = plan_->images[i];
     const PixelSize size = sizeOf(*plan_, image, width, height);
-    if (isOwn(i))
-      textures_[i] = device_.makeTexture(wordOf(image.format), size.width, size.height, bitsOf(image.format), bytes_);
+    const GLenum format = wordOf(image.format);
+    const int bits = bitsOf(image.format);
+    if (image.isMaps())
+      textures_[i] = device_.makeArray(format, size.width, size.height, static_cast<int>(image.layers), bits, bytes_);
+    else if (isOwn(i))
+      textures_[i] = device_.makeTexture(format, size.width, size.height, bits, bytes_);
   }
   bool complete = true;
   for (const PlannedPass& pass : plan_->passes)
@@ -52,7 +56,10 @@ bool PlanTextures::makeFrame(const PlannedPass& pass, GLuint frame) const {
   std::fill(std::begin(buffers), std::end(buffers), GLenum{GL_NONE});
   for (const pld_recipe_attachment& one : pass.attachments) {
     buffers[one.location] = GL_COLOR_ATTACHMENT0 + one.location;
-    device_.attach(frame, buffers[one.location], texture(one.image));
+    if (one.layer == PLD_LAYER_OF_FACE)
+      device_.attachLayer(frame, buffers[one.location], texture(one.image), static_cast<int>(one.location));
+    else
+      device_.attach(frame, buffers[one.location], texture(one.image));
   }
   if (texture(pass.depthImage)) device_.attach(frame, GL_DEPTH_ATTACHMENT, texture(pass.depthImage));
   device_.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);

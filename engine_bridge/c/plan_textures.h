@@ -29,7 +29,9 @@ class PlanTextures {
   uint64_t bytes() const { return bytes_; }
 
  private:
-  bool isOwn(uint32_t image) const { return plan_->images[image].role == PLD_ROLE_OWN; }
+  bool isOwn(uint32_t image) const {
+    return plan_->images[image].role == PLD_ROLE_OWN || plan_->images[image].isMaps();
+  }
   bool drawsToOwn(const PlannedPass& pass) const;
   bool makeFrame(const PlannedPass& pass, GLuint frame) const;
 

@@ -31,8 +31,9 @@ enum class StageNumber {
   depthOpacity
 };
 
-// Of a frame: all of it, its texels of low resolution, the spread pyramid.
-enum class PartOfFrame { picture, low, pyramid };
+// Of a frame: all of it, its texels of low resolution, the spread pyramid. Of a face of a shadow map: as casters are
+// drawn, filtered across, as it is looked up.
+enum class PartOfFrame { picture, low, pyramid, drawnFace, acrossFace, keptFace };
 
 struct PlannedImage {
   std::string name;
@@ -41,6 +42,9 @@ struct PlannedImage {
   PartOfFrame part = PartOfFrame::picture;
   uint32_t layers = 1;
   std::array<float, 4> clear{};
+
+  // An array, though it may have one layer.
+  bool isMaps() const { return role == PLD_ROLE_SHADOW_MAPS; }
 };
 
 constexpr uint32_t kAllComponents = 15;  // of pld_recipe_attachment.write_mask
@@ -91,6 +95,9 @@ struct RecipePlan {
   int atlasLayers = 2;
   std::vector<PlannedImage> images;
   std::vector<PlannedPass> passes;
+  pld_shadow_info maps{};  // of a plan of shadow maps, see caster_plan.h; all 0 in that of frames
+
+  bool isOfMaps() const { return maps.faces > 0; }
 };
 
 constexpr pld_format formatOf(PlaneFormat format) {

@@ -2,9 +2,13 @@
 // what 1 gave.
 #include "shared/shadow_filter.glsl"
 
-layout(binding = 0) uniform sampler2D first;   // FILTER 0 and 1: nearest; 2: the first channel
+layout(binding = 0) uniform sampler2D first;  // FILTER 0 and 1: nearest; 2: the first channel
+#ifndef GREY
 layout(binding = 1) uniform sampler2D second;  // steps; the second channel
+#if FILTER == 2
 layout(binding = 2) uniform sampler2D third;
+#endif
+#endif
 
 layout(location = 0) out vec4 red;
 #ifndef GREY
@@ -13,15 +17,17 @@ layout(location = 2) out vec4 blue;
 #endif
 
 vec4 texelAt(ivec2 at, int channel) {
+  vec4 texel = texelFetch(first, at, 0);
 #if FILTER == 2
-  return channel == 0 ? texelFetch(first, at, 0) : channel == 1 ? texelFetch(second, at, 0) : texelFetch(third, at, 0);
-#else
-  vec4 nearest = texelFetch(first, at, 0);
-#ifdef GREY
-  return shadowTexelOf(nearest.r, nearest.a);
-#else
-  return shadowTexelOf(nearest[channel], texelFetch(second, at, 0)[channel]);
+#ifndef GREY
+  if (channel == 1) texel = texelFetch(second, at, 0);
+  if (channel == 2) texel = texelFetch(third, at, 0);
 #endif
+  return texel;
+#elif defined(GREY)
+  return shadowTexelOf(texel.r, texel.a);
+#else
+  return shadowTexelOf(texel[channel], texelFetch(second, at, 0)[channel]);
 #endif
 }
 

@@ -65,12 +65,14 @@ RecipeHost::Image RecipeHost::makeImage(uint32_t index) const {
   const pld_recipe_image& image = *pld_recipe_image_at(&recipe_, index);
   const GLuint hosts[] = {0, host_.colour, host_.depth, host_.occlusion, host_.output};
   if (image.role > PLD_ROLE_OWN && image.role <= PLD_ROLE_PICTURE) return {hosts[image.role], {}};
+  if (image.role == PLD_ROLE_SHADOW_DEPTH) return {};
+  const bool isArray = image.layers > 1 || image.role == PLD_ROLE_SHADOW_MAPS;
   int32_t size[2];
   EXPECT_EQ(pld_recipe_image_size(&recipe_, index, host_.width, host_.height, size), PLD_OK);
   const GLenum format = kFormats[image.format];
   Image made;
-  glCreateTextures(image.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, 1, &made.texture);
-  if (image.layers == 1) {
+  glCreateTextures(isArray ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, 1, &made.texture);
+  if (!isArray) {
     glTextureStorage2D(made.texture, 1, format, size[0], size[1]);
     return made;
   }
@@ -89,18 +91,26 @@ GLuint RecipeHost::viewOf(const pld_recipe_read& read, uint32_t repeat) const {
                                                      : static_cast<std::size_t>(read.layer)];
 }
 
+GLuint RecipeHost::layerOf(const pld_recipe_attachment& one, const Turn& turn) const {
+  const Image& image = images_[one.image];
+  if (image.layers.empty()) return image.texture;
+  return one.layer == PLD_LAYER_OF_FACE ? image.layers[static_cast<uint32_t>(turn.faceLayer) + one.location]
+                                        : image.layers[turn.repeat % image.layers.size()];
+}
+
 // To frame_, cleared where the pass says so.
-void RecipeHost::attach(const pld_recipe_pass& pass, uint32_t repeat) const {
+void RecipeHost::attach(const pld_recipe_pass& pass, const Turn& turn) const {
   GLenum buffers[kDrawBuffers] = {};
   for (GLuint i = 0; i < kDrawBuffers; ++i) glNamedFramebufferTexture(frame_, GL_COLOR_ATTACHMENT0 + i, 0, 0);
   for (uint32_t i = 0; i < pass.attachment_count; ++i) {
     const pld_recipe_attachment& one = pass.attachments[i];
-    const Image& image = images_[one.image];
-    const GLuint texture = image.layers.empty() ? image.texture : image.layers[repeat % image.layers.size()];
     buffers[one.location] = GL_COLOR_ATTACHMENT0 + one.location;
-    glNamedFramebufferTexture(frame_, buffers[one.location], texture, 0);
+    glNamedFramebufferTexture(frame_, buffers[one.location], layerOf(one, turn), 0);
   }
-  const GLuint depth = pass.depth_image == PLD_NO_IMAGE ? 0 : images_[pass.depth_image].texture;
+  const GLuint depth = pass.depth_image == PLD_NO_IMAGE ? 0
+                       : pld_recipe_image_at(&recipe_, pass.depth_image)->role == PLD_ROLE_SHADOW_DEPTH
+                           ? turn.faceDepth
+                           : images_[pass.depth_image].texture;
   glNamedFramebufferTexture(frame_, GL_DEPTH_ATTACHMENT, depth, 0);
   glNamedFramebufferParameteri(frame_, GL_FRAMEBUFFER_DEFAULT_WIDTH, host_.width);  // of passes without attachments
   glNamedFramebufferParameteri(frame_, GL_FRAMEBUFFER_DEFAULT_HEIGHT, host_.height);
@@ -149,6 +159,21 @@ void RecipeHost::bind(const pld_recipe_pass& pass, uint32_t repeat) const {
   glBindBufferBase(GL_UNIFORM_BUFFER, pass.constants_binding, constants_);
 }
 
+// All that a pass needs but its draw.
+void RecipeHost::set(uint32_t index, const Turn& turn, const std::vector<char>& constants,
+                     const int32_t area[4]) const {
+  const pld_recipe_pass& pass = *pld_recipe_pass_at(&recipe_, index);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);  // before lists are emptied, too
+  glTextureBarrier();
+  glNamedBufferData(constants_, std::max<GLsizeiptr>(pass.constants_size, 16), nullptr, GL_STREAM_DRAW);
+  glNamedBufferSubData(constants_, 0, pass.constants_size, constants.data());
+  attach(pass, turn);
+  setBlending(pass);
+  bind(pass, turn.repeat);
+  glViewport(area[0], area[1], area[2], area[3]);
+  glUseProgram(programs_[index]);
+}
+
 void RecipeHost::run(const pld_frame& frame, const std::function<void(pld_stage, GLuint program)>& draw) {
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame_);
   glBindVertexArray(vertexArray_);
@@ -157,29 +182,49 @@ void RecipeHost::run(const pld_frame& frame, const std::function<void(pld_stage,
     uint32_t repeats = 0;
     ASSERT_EQ(pld_recipe_repeats(&recipe_, i, &frame, &repeats), PLD_OK);
     for (uint32_t repeat = 0; repeat < repeats; ++repeat) {
-      glMemoryBarrier(GL_ALL_BARRIER_BITS);  // before lists are emptied, too
-      glTextureBarrier();
       std::vector<char> constants(pass.constants_size);
       int32_t area[4];
       ASSERT_EQ(pld_recipe_fill(&recipe_, i, repeat, &frame, host_.width, constants.data(), constants.size(), area),
                 PLD_OK);
-      glNamedBufferData(constants_, std::max<GLsizeiptr>(pass.constants_size, 16), nullptr, GL_STREAM_DRAW);
-      glNamedBufferSubData(constants_, 0, pass.constants_size, constants.data());
-      attach(pass, repeat);
-      setBlending(pass);
-      bind(pass, repeat);
-      glViewport(area[0], area[1], area[2], area[3]);
-      glUseProgram(programs_[i]);
+      set(i, {repeat}, constants, area);
       if (pass.kind == PLD_PASS_DRAWS)
         draw(pass.stage, programs_[i]);
       else
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
   }
+  leave();
+}
+
+void RecipeHost::runFace(const pld_shadow_view& view, const std::function<void(GLuint program)>& draw) {
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame_);
+  glBindVertexArray(vertexArray_);
+  for (uint32_t i = 0; i < programs_.size(); ++i) {
+    const pld_recipe_pass& pass = *pld_recipe_pass_at(&recipe_, i);
+    std::vector<char> constants(pass.constants_size);
+    int32_t area[4], layer = -1;
+    ASSERT_EQ(pld_shadow_recipe_fill(&recipe_, i, &view, constants.data(), constants.size(), area, &layer), PLD_OK);
+    set(i, {0, layer, view.depth_texture}, constants, area);
+    if (pass.kind == PLD_PASS_DRAWS)
+      draw(programs_[i]);
+    else
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  leave();
+}
+
+void RecipeHost::leave() const {
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_TEST);
+  glBindSamplers(0, 16, nullptr);
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+GLuint RecipeHost::maps() const {
+  for (uint32_t i = 0; i < images_.size(); ++i)
+    if (pld_recipe_image_at(&recipe_, i)->role == PLD_ROLE_SHADOW_MAPS) return images_[i].texture;
+  return 0;
 }
 
 std::vector<float> RecipeHost::output(pld_role role) const {

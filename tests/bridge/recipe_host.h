@@ -21,6 +21,11 @@ class RecipeHost {
   // Runs all passes; the picture is in the host's output.
   //   draw  with the program in use, over the whole viewport
   void run(const pld_frame& frame, const std::function<void(pld_stage, GLuint program)>& draw);
+  // Of shadow maps: runs all passes for a face.
+  //   draw  with the program in use, over the whole face
+  void runFace(const pld_shadow_view& view, const std::function<void(GLuint program)>& draw);
+  // The array of PLD_ROLE_SHADOW_MAPS.
+  GLuint maps() const;
   // Of the image of one of the roles behind PLD_ROLE_PICTURE, in four channels; empty where the recipe has none.
   std::vector<float> output(pld_role role) const;
 
@@ -32,7 +37,16 @@ class RecipeHost {
 
   Image makeImage(uint32_t index) const;
   GLuint viewOf(const pld_recipe_read& read, uint32_t repeat) const;
-  void attach(const pld_recipe_pass& pass, uint32_t repeat) const;
+  // One repeat of a pass, or one face.
+  struct Turn {
+    uint32_t repeat = 0;
+    int32_t faceLayer = 0;
+    GLuint faceDepth = 0;
+  };
+  GLuint layerOf(const pld_recipe_attachment& one, const Turn& turn) const;
+  void attach(const pld_recipe_pass& pass, const Turn& turn) const;
+  void set(uint32_t index, const Turn& turn, const std::vector<char>& constants, const int32_t area[4]) const;
+  void leave() const;
   void setBlending(const pld_recipe_pass& pass) const;
   void bind(const pld_recipe_pass& pass, uint32_t repeat) const;
 

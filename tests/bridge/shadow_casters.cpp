@@ -102,6 +102,30 @@ pld_shadow_view plainShadowView() {
   return view;
 }
 
+std::vector<pld_shadow_view> sunAndLampViews() {
+  std::vector<pld_shadow_view> all{plainShadowView()};
+  constexpr int axes[6][3] = {{2, 1, 0}, {2, 1, 0}, {0, 2, 1}, {0, 2, 1}, {0, 1, 2}, {0, 1, 2}};
+  for (int face = 0; face < 6; ++face) {
+    pld_shadow_view view = plainShadowView();
+    view.kind = PLD_LIGHT_LOCAL;
+    view.light = 1;
+    view.first_face = 1;
+    view.faces = 6;
+    view.face = face;
+    std::memset(view.light_from_scene, 0, sizeof(view.light_from_scene));
+    for (int row = 0; row < 3; ++row)
+      view.light_from_scene[4 * axes[face][row] + row] = row == 2 && face % 2 == 0 ? -1.0f : 1.0f;
+    view.light_from_scene[15] = 1.0f;
+    view.projection[0] = view.projection[5] = 0.95f;
+    view.projection[10] = view.projection[11] = -1.0f;
+    view.projection[14] = -0.2f;
+    view.projection[15] = 0.0f;
+    view.far_depth = 5.0f;
+    all.push_back(view);
+  }
+  return all;
+}
+
 std::vector<pld_shadow_view> shadowViews(const Scene& scene, const Camera& camera, std::size_t light, int firstFace,
                                          int size) {
   LightViews all;

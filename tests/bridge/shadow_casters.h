@@ -14,6 +14,8 @@ pld_shadow_info shadowInfo(pld_shadow_form form, int size, int lights, int faces
 
 // Straight along -z, 2 wide, casters from 1 to 3.
 pld_shadow_view plainShadowView();
+// That one as light 0, and the six faces of a lamp, light 1.
+std::vector<pld_shadow_view> sunAndLampViews();
 // The main() of a caster that hides half of three quarters, a half and a quarter of the light, at a distance of 2.
 extern const char* const kPlainCaster;
 

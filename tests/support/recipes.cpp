@@ -19,6 +19,31 @@ RecipePointer makeRecipe(pld_recipe_info info, std::string* why) {
   return RecipePointer(made);
 }
 
+RecipePointer makeShadowRecipe(pld_recipe_info info, const pld_shadow_info& maps, std::string* why) {
+  char message[400] = {};
+  info.message = message;
+  info.message_size = sizeof(message);
+  pld_recipe* made = nullptr;
+  const pld_status status = pld_shadow_recipe_create(&info, &maps, &made);
+  if (why) *why = std::string(pld_status_name(status)) + ": " + message;
+  return RecipePointer(made);
+}
+
+pld_recipe_info recipeInfoLike(const pld_create_info& create, int version) {
+  pld_recipe_info info = pld_recipe_info_init(PLD_DIALECT_GL, version);
+  info.method = create.method;
+  info.tier = create.tier;
+  info.features = create.features;
+  info.weight = create.weight;
+  info.depth = create.depth;
+  info.clip = create.clip;
+  info.rows = create.rows;
+  info.uniform_binding = create.uniform_binding;
+  info.texture_binding = create.texture_unit;
+  info.storage_binding = create.storage_binding;
+  return info;
+}
+
 int forEachRecipe(const pld_recipe_info& like,
                   const std::function<void(const pld_recipe_info& info, const pld_recipe& recipe)>& found) {
   int count = 0;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
 #include <mutex>
 #include <set>
 #include <string>
@@ -12,7 +11,7 @@
 #include <vector>
 
 #include "tests/support/recipes.h"
-#include "tests/vulkan/spirv_text.h"
+#include "tests/vulkan/said_text.h"
 
 namespace pellucid::test {
 namespace {
@@ -33,34 +32,9 @@ void main() {
 }
 )";
 
-// One text and what its recipe says of it.
-struct SaidText {
-  std::string where, vertex, fragment, block;
-  std::map<std::string, std::pair<int, int>> reads, storage;
-  std::set<int> outputs;
-  int set = 0, constantsBinding = 0, constantsSize = 0;
-};
-
-SaidText saidOf(const pld_recipe_info& info, const pld_recipe_pass& pass) {
-  SaidText said;
-  said.where = std::string(pass.name) + " (" + nameOf(info) + ")";
-  said.fragment = pass.fragment;
-  if (pass.kind == PLD_PASS_DRAWS)
-    said.fragment = std::string(info.dialect == PLD_DIALECT_ES ? "#version 320 es\n" : "#version 450\n") +
-                    (info.features & PLD_FEATURE_RIMS ? "#define HAS_RIMS\n" : "") + pass.fragment + kHost;
-  else
-    said.vertex = pass.vertex;
-  said.set = static_cast<int>(pass.set);
-  said.block = pass.constants_block;
-  said.constantsBinding = static_cast<int>(pass.constants_binding);
-  said.constantsSize = static_cast<int>(pass.constants_size);
-  for (uint32_t i = 0; i < pass.read_count; ++i)
-    said.reads[pass.reads[i].sampler] = {said.set, static_cast<int>(pass.reads[i].binding)};
-  for (uint32_t i = 0; i < pass.storage_count; ++i)
-    said.storage[pass.storage[i].block] = {said.set, static_cast<int>(pass.storage[i].binding)};
-  for (uint32_t i = 0; i < pass.attachment_count; ++i)
-    said.outputs.insert(static_cast<int>(pass.attachments[i].location));
-  return said;
+SaidText saidBy(const pld_recipe_info& info, const pld_recipe_pass& pass) {
+  const std::string where = std::string(pass.name) + " (" + nameOf(info) + ")";
+  return saidOf(pass, where, info.dialect, info.features & PLD_FEATURE_RIMS ? "#define HAS_RIMS\n" : "", kHost);
 }
 
 // The texts of all permutations, each once for all that recipes say of it.
@@ -72,7 +46,7 @@ std::vector<SaidText> everyText(pld_dialect dialect, int glsl, int& permutations
   permutations = forEachRecipe(like, [&](const pld_recipe_info& info, const pld_recipe& recipe) {
     for (uint32_t i = 0; i < pld_recipe_pass_count(&recipe); ++i) {
       const pld_recipe_pass& pass = *pld_recipe_pass_at(&recipe, i);
-      SaidText said = saidOf(info, pass);
+      SaidText said = saidBy(info, pass);
       std::string key = std::to_string(pass.hash);
       for (const auto& [name, place] : said.reads) key += name + std::to_string(place.second);
       for (const auto& [name, place] : said.storage) key += name;
@@ -81,30 +55,6 @@ std::vector<SaidText> everyText(pld_dialect dialect, int glsl, int& permutations
     }
   });
   return texts;
-}
-
-// Where a text is told of numbers that none of its functions needs, the compiler leaves the block out.
-std::string faultOf(const SaidText& said, TextKind kind) {
-  const SpirvText text = compiledText(said.fragment, false, kind);
-  if (!text.failure.empty()) return text.failure;
-  if (!said.vertex.empty())
-    if (const SpirvText vertex = compiledText(said.vertex, true, kind); !vertex.failure.empty()) return vertex.failure;
-  if (kind == TextKind::es) return {};
-  if (text.samplers != said.reads) {
-    std::string names;
-    for (const auto& [name, place] : text.samplers)
-      if (!said.reads.count(name)) names += " reads " + name;
-    for (const auto& [name, place] : said.reads)
-      if (!text.samplers.count(name)) names += " does not read " + name;
-    return "other textures than the recipe says, or elsewhere:" + names;
-  }
-  if (text.storage != said.storage) return "other buffers than the recipe says";
-  if (text.outputs != said.outputs) return "other outputs than attachments";
-  if (text.blockBytes == 0) return {};
-  if (text.block != said.block || text.blockSet != said.set || text.blockBinding != said.constantsBinding)
-    return "another block than the recipe says: " + text.block;
-  if ((text.blockBytes + 15) / 16 * 16 != said.constantsSize) return "constants of another size";
-  return {};
 }
 
 void expectAll(const std::vector<SaidText>& texts, TextKind kind) {

@@ -27,7 +27,7 @@
        could be misused in silence is refused, and to hosts of before said as a warning.           \
        0.6: pld_frame.weight_reference. 0.7: PLD_METHOD_OVER, PLD_FEATURE_OUTPUTS,                 \
        PLD_FLAG_TRUST_TEXTURES. 0.9: recipe.h. 0.14: PLD_FEATURE_DEPTHS, _MOTION and _IDENTITY,    \
-       pld_frame.depth_opacity.                                                                    \
+       pld_frame.depth_opacity; shadow maps in recipe.h.                                           \
        A library takes hosts of every earlier minor version. */
 #define PLD_VERSION_PATCH 0
 #define PLD_VERSION ((PLD_VERSION_MAJOR << 20) | (PLD_VERSION_MINOR << 10) | PLD_VERSION_PATCH)
@@ -267,8 +267,10 @@ typedef PLD_ENUM(pld_stage){
     PLD_STAGE_LAYERS = 2, /* all transparent geometry, in any order */
     PLD_STAGE_RIMS = 3,   /* with PLD_FEATURE_RIMS, but for the published tier and PLD_METHOD_FRONT_TAIL: the cut-out
                              geometry of   the layers, by pldWriteRim() */
-    PLD_STAGE_LOW = 4     /* with PLD_FEATURE_LOW_RESOLUTION: geometry of its own, on width and height over low_factor;
+    PLD_STAGE_LOW = 4,    /* with PLD_FEATURE_LOW_RESOLUTION: geometry of its own, on width and height over low_factor;
                              pld_end() upsamples what it leaves, as one layer of every pixel */
+    PLD_STAGE_CASTERS = 5 /* of recipes of shadow maps alone, where pld_shadow_begin() serves a pass: what casts, as one
+                             face of a light sees it, by pldWriteCaster() */
 } pld_stage;
 
 typedef PLD_ENUM(pld_view){
@@ -372,8 +374,9 @@ typedef struct pld_shadow_info {
   int32_t coloured;    /* 0: no caster transmits colour, and one channel serves all */
   int32_t closer_edge; /* 1 to 16 texels, of the square that the forms 2 to 4 compare; 4 */
   uint32_t seed;
-  uint32_t uniform_binding; /* where the host binds PLD_VALUE_SHADOW_BUFFER and _TEXTURE while it draws with */
-  uint32_t texture_unit;    /* pldShadow(): other places than those of pld_create_info */
+  uint32_t uniform_binding; /* where the host binds PLD_VALUE_SHADOW_BUFFER and _TEXTURE, or those of a recipe, while it
+                               draws with */
+  uint32_t texture_unit;    /* pldShadow(): other places than those of pld_create_info, of pld_recipe_info */
 } pld_shadow_info;
 
 typedef PLD_ENUM(pld_light){

@@ -15,7 +15,10 @@
         three vertices without any input.
      3. The image of PLD_ROLE_PICTURE is the picture. The passes that write those of PLD_ROLE_REACTIVE and after may be
         left out, and run again.
-   No pass reads an image that it writes. */
+   No pass reads an image that it writes.
+
+   Shadow maps of transparent casters have a recipe of their own, whose passes draw one face of one light: see
+   pld_shadow_recipe_create(). Since 0.14. */
 #ifndef PELLUCID_RECIPE_H
 #define PELLUCID_RECIPE_H
 
@@ -73,7 +76,12 @@ typedef PLD_ENUM(pld_role){
     PLD_ROLE_MEAN_DEPTH = 7,    /* PLD_FEATURE_DEPTHS: red is what PLD_VIEW_MEAN_DEPTH shows */
     PLD_ROLE_OPACITY_DEPTH = 8, /* PLD_FEATURE_DEPTHS in PLD_TIER_EXACT: red is what PLD_VIEW_OPACITY_DEPTH shows */
     PLD_ROLE_MOTION = 9,        /* PLD_FEATURE_MOTION: red, green and alpha are what PLD_VIEW_MOTION shows */
-    PLD_ROLE_IDENTITY = 10      /* PLD_FEATURE_IDENTITY: red is what PLD_VIEW_IDENTITY shows */
+    PLD_ROLE_IDENTITY = 10,     /* PLD_FEATURE_IDENTITY: red is what PLD_VIEW_IDENTITY shows */
+    /* Of recipes of shadow maps: */
+    PLD_ROLE_SHADOW_MAPS = 11, /* the maps of all faces: an array, of one layer too, that keeps what a face was drawn to
+                                  until it is drawn again, and that lookups read. Its memory serves nothing else */
+    PLD_ROLE_SHADOW_DEPTH = 12 /* as pld_shadow_view.depth_texture; tested against, never written. A face without one is
+                                  drawn without the test */
 } pld_role;
 
 typedef PLD_ENUM(pld_usage){PLD_USAGE_READ = 1, PLD_USAGE_COLOUR = 2, PLD_USAGE_DEPTH = 4} pld_usage;
@@ -97,9 +105,10 @@ typedef struct pld_recipe_buffer {
 /* Of `layer`, besides the number of one. */
 #define PLD_LAYERS_ALL (-1)      /* read as an array */
 #define PLD_LAYER_OF_REPEAT (-2) /* repeat modulo layers */
-#define PLD_LAYER_BEFORE                                                                       \
-  (-3) /* repeat + 1 modulo layers: of two, what the last repeat wrote. In repeat 0 nothing is \
-          looked up there */
+#define PLD_LAYER_BEFORE                                                                                               \
+  (-3)                         /* repeat + 1 modulo layers: of two, what the last repeat wrote. In repeat 0 nothing is \
+                                  looked up there */
+#define PLD_LAYER_OF_FACE (-4) /* of shadow maps: that of pld_shadow_recipe_fill(), plus the attachment's location */
 
 typedef PLD_ENUM(pld_load){PLD_LOAD_KEEP = 0, PLD_LOAD_CLEAR = 1,
                            PLD_LOAD_ANY = 2 /* all of the area is written */} pld_load;
@@ -180,7 +189,8 @@ PLD_API const pld_recipe_image* pld_recipe_image_at(const pld_recipe* recipe, ui
 PLD_API const pld_recipe_buffer* pld_recipe_buffer_at(const pld_recipe* recipe, uint32_t index);
 PLD_API const pld_recipe_pass* pld_recipe_pass_at(const pld_recipe* recipe, uint32_t index);
 
-/* For pictures up to width x height, both 1 to 65536. The host's own images have at least these sizes. */
+/* For pictures up to width x height, both 1 to 65536. The host's own images have at least these sizes. Those of shadow
+   maps have one size, for which width and height are not looked at. */
 PLD_API pld_status pld_recipe_image_size(const pld_recipe* recipe, uint32_t image, int32_t width, int32_t height,
                                          int32_t size[2]);
 /* With room for `fragments` in every stage: pixels times as many as they have on the average.
@@ -202,8 +212,48 @@ PLD_API pld_status pld_recipe_repeats(const pld_recipe* recipe, uint32_t pass, c
 PLD_API pld_status pld_recipe_fill(const pld_recipe* recipe, uint32_t pass, uint32_t repeat, const pld_frame* frame,
                                    int32_t width, void* constants, size_t size, int32_t area[4]);
 
-/* PLD_VALUE_BITS_PER_PIXEL, PLD_VALUE_PLANES and PLD_VALUE_GEOMETRY_PASSES, as pld_query() has them. */
+/* PLD_VALUE_BITS_PER_PIXEL, PLD_VALUE_PLANES and PLD_VALUE_GEOMETRY_PASSES, of shadow maps PLD_VALUE_SHADOW_BYTES, as
+   pld_query() has them. */
 PLD_API pld_status pld_recipe_query(const pld_recipe* recipe, pld_value what, uint64_t* value);
+
+/* Shadow maps of transparent casters: what pld_shadow_begin() and pld_shadow_end() do with one face, as a recipe.
+   Images, passes and their texts are asked for by the functions above; the first pass is the host's draws of its
+   casters (PLD_STAGE_CASTERS), the others filter the face. Of the functions that take a frame this recipe has none.
+
+   Once: make the images by pld_recipe_image_size(), and a uniform buffer for the table, pld_shadow_recipe_table() with
+   a null view. The layers of PLD_ROLE_SHADOW_MAPS can be read from then on, whatever they hold.
+
+   For every face that is drawn, whenever that is: pld_shadow_recipe_check(); for each pass pld_shadow_recipe_fill(),
+   and draw; then pld_shadow_recipe_table() for its rows of the table. A light may be looked up once all of
+   its faces are drawn.
+     info  that of the recipe of frames whose layers ask the maps: the casters' block is where theirs is,
+           info.uniform_binding, and what the text of lookups declares lies beside what the layers' text does, in
+           the same set, at maps.uniform_binding and maps.texture_unit. What is wrong with it is said as
+           pld_recipe_create() says it */
+PLD_API pld_status pld_shadow_recipe_create(const pld_recipe_info* info, const pld_shadow_info* maps,
+                                            pld_recipe** recipe);
+/* As PLD_SHADOW_TEXT_LOOKUP of pld_shadow_glsl(): pldShadow() and pldShadowOnOpaque(), the block PldShadows, which
+   holds the table, and the texture array pldShadowMaps. It goes behind the #version line of any shader that asks,
+   beside the text of layers or without it. Lives as long as the recipe.
+     hash  null, or takes the hash of the text */
+PLD_API pld_status pld_shadow_recipe_glsl(const pld_recipe* recipe, const char** text, uint64_t* hash);
+/* Whether a face can be drawn, as pld_shadow_begin() sees it; its depth_texture is not looked at. */
+PLD_API pld_status pld_shadow_recipe_check(const pld_recipe* recipe, const pld_shadow_view* view, char* message,
+                                           size_t message_size);
+/* Of a view that pld_shadow_recipe_check() lets through. Every pass runs once.
+     constants  null, or room for size bytes, at least the pass's constants_size
+     area       x, y, width and height of viewport and scissor
+     layer      of PLD_ROLE_SHADOW_MAPS, that of the face's first channel */
+PLD_API pld_status pld_shadow_recipe_fill(const pld_recipe* recipe, uint32_t pass, const pld_shadow_view* view,
+                                          void* constants, size_t size, int32_t area[4], int32_t* layer);
+PLD_API pld_status pld_shadow_recipe_table_size(const pld_recipe* recipe, size_t* bytes);
+/* Writes the rows of the view's light and face, and leaves those of others; with a null view all are those of lights
+   without a face, through which everything shines.
+     rows   PLD_ROWS_UP where NDC's y grows with the rows of the image, as GL has it and Vulkan with a viewport of
+            positive height; PLD_ROWS_DOWN where it runs against them: GL_UPPER_LEFT, and negative heights
+     table  of size bytes, at least pld_shadow_recipe_table_size() */
+PLD_API pld_status pld_shadow_recipe_table(const pld_recipe* recipe, const pld_shadow_view* view, pld_rows rows,
+                                           void* table, size_t size);
 
 static inline pld_recipe_info pld_recipe_info_init(pld_dialect dialect, int32_t glsl) {
   pld_recipe_info info;
