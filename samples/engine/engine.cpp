@@ -1,9 +1,9 @@
 // The smallest deferred engine that has transparency: G-buffer, light pass, Pellucid's pass, resolve. Of Pellucid it
 // knows the public header alone. Headless by EGL, or in a window.
 //
-//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER][,rims][,low]] [window[:FRAMES]]
+//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER][,rims][,low][,shadows]] [window[:FRAMES]]
 //   METHOD: phenomenological, weighted, front+tail; TIER: float, half, published, exact
-//   rims: ambient occlusion at rims of leaves; low: smoke at half the resolution
+//   rims: ambient occlusion at rims of leaves; low: smoke at half the resolution; shadows: of what is transparent
 //
 // Draws the glTF's transparent primitives over a room of its own, and writes OUTDIR/opaque.exr (colour and Z, what
 // `pellucid composite` takes) and OUTDIR/frame.exr. `window` walks around them until it is closed; with FRAMES it
@@ -19,6 +19,7 @@
 #include <exception>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -125,7 +126,6 @@ class Engine {
     glCreateVertexArrays(1, &nothing_);
     opaque_ = program(kMeshVertex, kGBuffer);
     hiding_ = program(kFullScreen, kOcclusion);
-    light_ = program(kFullScreen, kLight);
 
     pld_create_info info{};
     info.struct_size = sizeof(info);
@@ -141,26 +141,30 @@ class Engine {
     info.texture_unit = 4;
     if (pld_create(&info, &pass_) != PLD_OK) stop("no pass");
     check(pld_resize(pass_, width, height), pass_);
+    std::string lookups;
+    if (asked.shadows) lookups = addShadows();
+    light_ = program(kFullScreen, lookups + kLight);
     const bool front = asked.method == PLD_METHOD_FRONT_TAIL, rims = features_ & PLD_FEATURE_RIMS;
-    if (front && asked.tier != PLD_TIER_EXACT) addStage(PLD_STAGE_FRONT);
-    addStage(PLD_STAGE_LAYERS);
-    if (rims && !front && asked.tier != PLD_TIER_PUBLISHED) addStage(PLD_STAGE_RIMS);
-    if (features_ & PLD_FEATURE_LOW_RESOLUTION) addStage(PLD_STAGE_LOW);
+    if (front && asked.tier != PLD_TIER_EXACT) addStage(PLD_STAGE_FRONT, lookups);
+    addStage(PLD_STAGE_LAYERS, lookups);
+    if (rims && !front && asked.tier != PLD_TIER_PUBLISHED) addStage(PLD_STAGE_RIMS, lookups);
+    if (features_ & PLD_FEATURE_LOW_RESOLUTION) addStage(PLD_STAGE_LOW, lookups);
   }
   ~Engine() { pld_destroy(&pass_); }
 
   void draw(const Scene& scene) {
-    const SceneNumbers numbers = sceneNumbers(scene, width_, height_, true);
-    glNamedBufferSubData(sceneNumbers_, 0, sizeof(numbers), &numbers);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glBindBufferBase(GL_UNIFORM_BUFFER, kSceneBinding, sceneNumbers_);
     glBindBufferBase(GL_UNIFORM_BUFFER, kMeshBinding, meshNumbers_);
-    for (const auto& [binding, texture] : {std::pair{kTexturesBinding, textures_},
-                                           {kDepthBinding, depth_},
+    glBindTextureUnit(kTexturesBinding, textures_);
+    if (casters_) drawShadows(scene);
+    const SceneNumbers numbers = sceneNumbers(scene, width_, height_, true);
+    glNamedBufferSubData(sceneNumbers_, 0, sizeof(numbers), &numbers);
+    for (const auto& [binding, texture] : {std::pair{kDepthBinding, depth_},
                                            {kNormalBinding, normal_},
                                            {kAlbedoBinding, albedo_},
                                            {kOcclusionBinding, occlusion_}})
       glBindTextureUnit(binding, texture);
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glViewport(0, 0, width_, height_);
 
     glBindFramebuffer(GL_FRAMEBUFFER, frames_[0]);
@@ -170,7 +174,7 @@ class Engine {
     glDepthMask(GL_TRUE);
     for (GLint i = 0; i < 2; ++i) glClearNamedFramebufferfv(frames_[0], GL_COLOR, i, black);
     glClearNamedFramebufferfv(frames_[0], GL_DEPTH, 0, &nothing);
-    drawMeshes(scene, opaque_, [](const Material& material) { return material.opaque(); });
+    drawMeshes(scene, scene.viewFromWorld, opaque_, std::nullopt);
     glDisable(GL_DEPTH_TEST);
     glBindVertexArray(nothing_);
     for (const auto& [frame, name] : {std::pair{frames_[3], hiding_}, {frames_[1], light_}}) {
@@ -185,7 +189,7 @@ class Engine {
     frame.occlusion_texture = occlusion_;
     for (const auto& [stage, name] : stages_) {
       check(pld_begin(pass_, stage, &frame), pass_);
-      drawMeshes(scene, name, [&, stage = stage](const Material& one) { return isDrawnIn(stage, one, features_); });
+      drawMeshes(scene, scene.viewFromWorld, name, stage);
       check(pld_end(pass_), pass_);
     }
     pld_target target{};
@@ -233,20 +237,44 @@ class Engine {
       glReadPixels(0, 0, width_, height_, format, GL_FLOAT, texels.data());
     return texels;
   }
-  void addStage(pld_stage stage) {
+  // Returns what goes before shaders that ask the sun's light.
+  std::string addShadows() {
+    const pld_shadow_info maps = shadowMaps();
+    check(pld_shadow_resize(pass_, &maps), pass_);
+    const char *caster = nullptr, *lookup = nullptr;
+    check(pld_shadow_glsl(pass_, PLD_SHADOW_TEXT_CASTER, 450, &caster), pass_);
+    casters_ = program(kMeshVertex, caster + kCaster);
+    check(pld_shadow_glsl(pass_, PLD_SHADOW_TEXT_LOOKUP, 450, &lookup), pass_);
+    return "#define SUN_IS_SHADOWED\n" + std::string(lookup);
+  }
+  void drawShadows(const Scene& scene) {
+    const SunView sun = sunViewOf(scene);
+    const SceneNumbers numbers = sceneNumbers(sun);
+    glNamedBufferSubData(sceneNumbers_, 0, sizeof(numbers), &numbers);
+    check(pld_shadow_begin(pass_, &sun.view), pass_);
+    drawMeshes(scene, sun.lightFromWorld, casters_, PLD_STAGE_CASTERS);
+    check(pld_shadow_end(pass_), pass_);
+    uint64_t texture = 0, buffer = 0;
+    check(pld_query(pass_, PLD_VALUE_SHADOW_TEXTURE, &texture), pass_);
+    check(pld_query(pass_, PLD_VALUE_SHADOW_BUFFER, &buffer), pass_);
+    glBindTextureUnit(kShadowMapsBinding, static_cast<GLuint>(texture));
+    glBindBufferBase(GL_UNIFORM_BUFFER, kShadowTableBinding, static_cast<GLuint>(buffer));
+  }
+  void addStage(pld_stage stage, const std::string& lookups) {
     const char* seam = nullptr;
     check(pld_glsl(pass_, stage, 450, &seam), pass_);
     const std::string rims = features_ & PLD_FEATURE_RIMS ? "#define RIMS_OF_LEAVES\n" : "";
-    stages_.emplace_back(stage, program(kMeshVertex, seam + rims + kGlass));
+    stages_.emplace_back(stage, program(kMeshVertex, seam + rims + lookups + kGlass));
     check(pld_connect(pass_, stages_.back().second), pass_);
   }
-  template <class Wanted>
-  void drawMeshes(const Scene& scene, GLuint name, const Wanted& isWanted) const {
+  // Of a stage of Pellucid's pass, or of the G-buffer.
+  void drawMeshes(const Scene& scene, const glm::mat4& viewFromWorld, GLuint name,
+                  std::optional<pld_stage> stage) const {
     glUseProgram(name);
     glBindVertexArray(meshes_);
     for (const Mesh& mesh : scene.meshes) {
-      if (!isWanted(mesh.material)) continue;
-      const MeshNumbers numbers = meshNumbers(scene, mesh);
+      if (stage ? !isDrawnIn(*stage, mesh.material, features_) : !mesh.material.opaque()) continue;
+      const MeshNumbers numbers = meshNumbers(viewFromWorld, mesh);
       glNamedBufferSubData(meshNumbers_, 0, sizeof(numbers), &numbers);
       (mesh.material.bothSides ? glDisable : glEnable)(GL_CULL_FACE);
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indexCount), GL_UNSIGNED_INT,
@@ -258,7 +286,8 @@ class Engine {
   int width_, height_;
   uint32_t features_;
   GLuint albedo_ = 0, normal_ = 0, lit_ = 0, depth_ = 0, occlusion_ = 0, frame_ = 0, frames_[4] = {}, nothing_ = 0,
-         opaque_ = 0, hiding_ = 0, light_ = 0, meshes_ = 0, textures_ = 0, sceneNumbers_ = 0, meshNumbers_ = 0;
+         opaque_ = 0, casters_ = 0, hiding_ = 0, light_ = 0, meshes_ = 0, textures_ = 0, sceneNumbers_ = 0,
+         meshNumbers_ = 0;
   std::vector<std::pair<pld_stage, GLuint>> stages_;
   pld_pass* pass_ = nullptr;
 };
@@ -288,22 +317,18 @@ GLFWwindow* makeWindow(int width, int height) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count < 3 || count > 6)
-    stop("engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER][,rims][,low]] [window[:FRAMES]]");
-  int width = 640, height = 360;
-  if (count > 3 && (std::sscanf(arguments[3], "%dx%d", &width, &height) != 2 || width < 1 || height < 1))
-    stop("expected WIDTHxHEIGHT");
-  const Asked asked = askedFor(count > 4 ? arguments[4] : "phenomenological");
-  const std::string folder = arguments[2];
-  const std::string shows = count > 5 ? arguments[5] : "";
+  const Arguments asked =
+      argumentsOf(count, arguments,
+                  "engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER][,rims][,low][,shadows]] [window[:FRAMES]]");
+  const std::string &folder = asked.folder, &shows = asked.last;
   int frames = 0;
   if (!shows.empty() && shows != "window" && (std::sscanf(shows.c_str(), "window:%d", &frames) != 1 || frames < 1))
     stop("expected window or window:FRAMES, found " + shows);
   try {
-    GLFWwindow* const window = shows.empty() ? nullptr : makeWindow(width, height);
+    GLFWwindow* const window = shows.empty() ? nullptr : makeWindow(asked.width, asked.height);
     if (!window) makeContext();
-    Scene scene = readScene(arguments[1]);
-    Engine engine(scene, width, height, asked);
+    Scene scene = readScene(asked.glass);
+    Engine engine(scene, asked.width, asked.height, asked.asked);
     engine.draw(scene);
     engine.draw(scene);  // what a first frame compiles is no matter of its time
     engine.write(folder + "/opaque.exr", engine.lit());

@@ -7,11 +7,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <iterator>
 #include <limits>
 #include <sstream>
 #include <utility>
+
+#include "samples/engine/engine_shading.h"
 
 namespace engine {
 namespace {
@@ -78,19 +81,22 @@ glm::mat4 clipFromView(const Scene& scene, int width, int height) {
 
 SceneNumbers sceneNumbers(const Scene& scene, int width, int height, bool rowsUp) {
   const glm::vec3 toSun = glm::normalize(glm::mat3(scene.viewFromWorld) * scene.toSun);
-  return {clipFromView(scene, width, height), glm::vec4(toSun, 0.0f), glm::vec4(scene.sun, 0.0f),
-          glm::vec4(kAmbient, rowsUp ? 1.0f : -1.0f)};
+  const float rows = rowsUp ? 1.0f : -1.0f;
+  SceneNumbers numbers{clipFromView(scene, width, height), glm::vec4(toSun, 0.0f), glm::vec4(scene.sun, 0.0f),
+                       glm::vec4(kAmbient, rows)};
+  numbers.clipFromView[1][1] *= rows;
+  return numbers;
 }
 
-MeshNumbers meshNumbers(const Scene& scene, const Mesh& mesh) {
+MeshNumbers meshNumbers(const glm::mat4& viewFromWorld, const Mesh& mesh) {
   const Material& material = mesh.material;
-  return {scene.viewFromWorld * mesh.worldFromObject,
+  return {viewFromWorld * mesh.worldFromObject,
           material.base,
           {material.roughness, material.transmission, material.ior, material.thickness},
           material.cutoff,
           material.unlit,
           material.texture,
-          0};
+          static_cast<std::int32_t>(mesh.firstIndex)};
 }
 
 Asked askedFor(const std::string& text) {
@@ -112,18 +118,62 @@ Asked askedFor(const std::string& text) {
   asked.features = PLD_FEATURE_COLOURED;
   if (asked.tier != PLD_TIER_PUBLISHED) asked.features |= PLD_FEATURE_LIGHT;
   if (asked.method == PLD_METHOD_PHENOMENOLOGICAL) asked.features |= PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION;
-  const char* const features[] = {"rims", "low"};
-  constexpr uint32_t bits[] = {PLD_FEATURE_RIMS, PLD_FEATURE_LOW_RESOLUTION};
-  for (std::size_t i = 1; i < words.size(); ++i)
-    asked.features |= bits[numberOf(std::begin(features), std::end(features), words[i])];
+  const char* const features[] = {"rims", "low", "shadows"};
+  constexpr uint32_t bits[] = {PLD_FEATURE_RIMS, PLD_FEATURE_LOW_RESOLUTION, 0};  // shadow maps are no feature
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const int feature = numberOf(std::begin(features), std::end(features), words[i]);
+    asked.features |= bits[feature];
+    asked.shadows |= feature == 2;
+  }
   return asked;
+}
+
+Arguments argumentsOf(int count, char** arguments, const std::string& usage) {
+  if (count < 3 || count > 6) stop(usage);
+  Arguments found;
+  found.glass = arguments[1], found.folder = arguments[2];
+  if (count > 5) found.last = arguments[5];
+  if (count > 3 &&
+      (std::sscanf(arguments[3], "%dx%d", &found.width, &found.height) != 2 || found.width < 1 || found.height < 1))
+    stop("expected WIDTHxHEIGHT");
+  found.asked = askedFor(count > 4 ? arguments[4] : "phenomenological");
+  return found;
 }
 
 bool isDrawnIn(pld_stage stage, const Material& material, uint32_t features) {
   const bool low = material.lowResolution && features & PLD_FEATURE_LOW_RESOLUTION;
   if (stage == PLD_STAGE_LOW) return low;
+  if (stage == PLD_STAGE_CASTERS) return !material.opaque();
   if (stage == PLD_STAGE_RIMS) return material.cutoff > 0.0f;
   return !low && (!material.opaque() || material.cutoff > 0.0f);
+}
+
+pld_shadow_info shadowMaps() {
+  pld_shadow_info maps = pld_shadow_info_init(1024, 1, 1);
+  maps.uniform_binding = kShadowTableBinding;
+  maps.texture_unit = kShadowMapsBinding;
+  return maps;
+}
+
+SunView sunViewOf(const Scene& scene) {
+  const glm::vec3 centre = 0.5f * (scene.least + scene.most);
+  const float r = 0.5f * glm::length(scene.most - scene.least);
+  const glm::vec3 up = std::abs(scene.toSun.y) > 0.99f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  SunView sun{glm::lookAt(centre + 2.0f * r * scene.toSun, centre, up), pld_shadow_view_init(PLD_LIGHT_DIRECTIONAL)};
+  sun.view.near_depth = r, sun.view.far_depth = 3.0f * r;
+  const glm::mat4 lightFromView = sun.lightFromWorld * glm::inverse(scene.viewFromWorld);
+  glm::mat4 clipFromLight(1.0f / r);  // orthographic; reversed depth
+  clipFromLight[2][2] = 0.5f / r;
+  clipFromLight[3] = glm::vec4(0.0f, 0.0f, 1.5f, 1.0f);
+  std::memcpy(sun.view.light_from_scene, glm::value_ptr(lightFromView), sizeof(sun.view.light_from_scene));
+  std::memcpy(sun.view.projection, glm::value_ptr(clipFromLight), sizeof(sun.view.projection));
+  return sun;
+}
+
+SceneNumbers sceneNumbers(const SunView& sun) {
+  SceneNumbers numbers{};
+  numbers.clipFromView = glm::make_mat4(sun.view.projection);
+  return numbers;
 }
 
 pld_frame frameOf(const Scene& scene, int width, int height) {

@@ -69,26 +69,48 @@ struct SceneNumbers {
   glm::mat4 clipFromView;
   glm::vec4 toSun, sun, ambientAndRows;
 };
+// Where rows run down clip y does too.
 SceneNumbers sceneNumbers(const Scene& scene, int width, int height, bool rowsUp);
 struct MeshNumbers {
   glm::mat4 viewFromObject;
   glm::vec4 base, surfaceValues;
   float cutoff;
-  std::int32_t unlit, texture, unused;
+  std::int32_t unlit, texture, firstIndex;
 };
-MeshNumbers meshNumbers(const Scene& scene, const Mesh& mesh);
+MeshNumbers meshNumbers(const glm::mat4& viewFromWorld, const Mesh& mesh);
 
-// METHOD, METHOD:TIER, and behind either ",rims" or ",low"; other features are those that glTF materials need.
+// METHOD, METHOD:TIER, and behind either ",rims", ",low" and ",shadows"; other features are those that glTF materials
+// need.
 struct Asked {
   pld_method method;
   pld_tier tier;
   uint32_t features;
+  bool shadows;
 };
 Asked askedFor(const std::string& text);
+
+// PROGRAM GLASS.glb OUTDIR [WIDTHxHEIGHT] [what askedFor() takes] [LAST]
+struct Arguments {
+  std::string glass, folder, last;  // last is empty where there is none
+  int width = 640, height = 360;
+  Asked asked{};
+};
+//   usage  said where they are others
+Arguments argumentsOf(int count, char** arguments, const std::string& usage);
+
 constexpr float kFragmentsAPixel = 4.0f;  // of the exact tier
 
 // Whether a stage of Pellucid's pass draws a material. Smoke is at low resolution where that is asked for.
 bool isDrawnIn(pld_stage stage, const Material& material, uint32_t features);
+
+// One map, and the view of the sun, which has all that is transparent in it.
+pld_shadow_info shadowMaps();
+struct SunView {
+  glm::mat4 lightFromWorld;
+  pld_shadow_view view;  // asked in the camera's view space
+};
+SunView sunViewOf(const Scene& scene);
+SceneNumbers sceneNumbers(const SunView& sun);  // rows run up
 
 // All but the textures.
 pld_frame frameOf(const Scene& scene, int width, int height);

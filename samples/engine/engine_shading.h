@@ -1,13 +1,16 @@
 // How a small engine shades: GLSL 450 behind the #version line, for OpenGL and for Vulkan.
 //   kMeshVertex  with kGBuffer or, behind Pellucid's seam, kGlass
 //   kFullScreen  with kOcclusion or kLight
-// Uniform blocks are those of engine_scene.h. Pellucid's part has the lower bindings.
+//   kMeshVertex  with kCaster, behind Pellucid's text of casters: what the sun sees
+// Uniform blocks are those of engine_scene.h. Pellucid's part has the lower bindings. Where transparent things cast
+// shadows, SUN_IS_SHADOWED is defined and Pellucid's text of lookups stands before kLight and kGlass.
 #pragma once
 #include <string>
 
 namespace engine {
 
-constexpr unsigned kSceneBinding = 16, kMeshBinding = 17;  // the second but on Vulkan, where it is pushed
+constexpr unsigned kShadowTableBinding = 11, kShadowMapsBinding = 12;  // of what Pellucid's lookups declare
+constexpr unsigned kSceneBinding = 16, kMeshBinding = 17;              // the second but on Vulkan, where it is pushed
 constexpr unsigned kTexturesBinding = 18, kDepthBinding = 19, kNormalBinding = 20, kAlbedoBinding = 21,
                    kOcclusionBinding = 22;
 
@@ -23,7 +26,7 @@ uniform MeshNumbers {
   vec4 base;
   vec4 surfaceValues;  // roughness, transmission, ior, thickness in metres
   float cutoff;        // above 0 of leaves, which a mask cuts out
-  int unlit, baseLayer;  // of baseTextures, or less than 0
+  int unlit, baseLayer, firstIndex;  // baseLayer of baseTextures, or less than 0
 };
 )";
 
@@ -79,18 +82,22 @@ void main() {
 }
 )";
 
-// Alchemy ambient obscurance (McGuire, Osman, Bukowski, Hennessy: HPG 2011) over pixels at fixed offsets, whose lengths
-// in the scene grow with distance.
-inline const std::string kOcclusion = kNumbers + R"(
+// A point of the G-buffer in view space.
+inline const std::string kViewAt = R"(
 layout(binding = 19) uniform sampler2D depth;
 layout(binding = 20) uniform sampler2D normal;
-layout(location = 0) out vec4 occlusion;
 
 vec3 viewAt(ivec2 pixel) {
   float z = clipFromView[3][2] / texelFetch(depth, pixel, 0).r;
   vec2 ndc = 2.0 * (vec2(pixel) + 0.5) / vec2(textureSize(depth, 0)) - 1.0;
-  return vec3(ndc * vec2(1.0, rows) * z / vec2(clipFromView[0][0], clipFromView[1][1]), -z);
+  return vec3(ndc * z / vec2(clipFromView[0][0], clipFromView[1][1]), -z);
 }
+)";
+
+// Alchemy ambient obscurance (McGuire, Osman, Bukowski, Hennessy: HPG 2011) over pixels at fixed offsets, whose lengths
+// in the scene grow with distance.
+inline const std::string kOcclusion = kNumbers + kViewAt + R"(
+layout(location = 0) out vec4 occlusion;
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy), size = textureSize(depth, 0);
@@ -110,30 +117,34 @@ void main() {
 }
 )";
 
-inline const std::string kLight = kNumbers + R"(
-layout(binding = 19) uniform sampler2D depth;
-layout(binding = 20) uniform sampler2D normal;
+inline const std::string kLight = kNumbers + kViewAt + R"(
 layout(binding = 21) uniform sampler2D albedo;
 layout(binding = 22) uniform sampler2D occlusion;
 layout(location = 0) out vec4 lit;
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec3 n = texelFetch(normal, pixel, 0).xyz;
-  vec3 light = sun * max(dot(n, toSun), 0.0) / 3.14159265 + ambient * texelFetch(occlusion, pixel, 0).r;
-  lit = texelFetch(depth, pixel, 0).r > 0.0 ? vec4(texelFetch(albedo, pixel, 0).rgb * light, 1.0) : vec4(ambient, 1.0);
+  lit = vec4(ambient, 1.0);
+  if (texelFetch(depth, pixel, 0).r <= 0.0) return;
+  vec3 fromSun = sun * max(dot(texelFetch(normal, pixel, 0).xyz, toSun), 0.0) / 3.14159265;
+#ifdef SUN_IS_SHADOWED
+  fromSun *= pldShadowOnOpaque(0, viewAt(pixel));
+#endif
+  lit.rgb = texelFetch(albedo, pixel, 0).rgb * (fromSun + ambient * texelFetch(occlusion, pixel, 0).r);
 }
 )";
 
-// glTF: what a dielectric reflects and lets through; then one call. RIMS_OF_LEAVES is defined where rims are asked for.
-inline const std::string kGlass = kMaterial + R"(
+inline const std::string kFresnel = R"(
 float fresnel(float c, float ior) {
   if (ior <= 1.0) return 0.0;
   float inside = sqrt(max(1.0 - (1.0 - c * c) / (ior * ior), 0.0));
   float p = (ior * c - inside) / (ior * c + inside), s = (c - ior * inside) / (c + ior * inside);
   return 0.5 * (p * p + s * s);
 }
+)";
 
+// glTF: what a dielectric reflects and lets through; then one call. RIMS_OF_LEAVES is defined where rims are asked for.
+inline const std::string kGlass = kMaterial + kFresnel + R"(
 // Lambert + GGX, times the cosine.
 vec3 reflectSun(vec3 n, vec3 toEye, vec3 albedo, float ior, float roughness) {
   float cosLight = dot(n, toSun);
@@ -156,14 +167,18 @@ void main() {
   vec3 toEye = normalize(-viewPosition);
   vec3 n = normalize(gl_FrontFacing ? viewNormal : -viewNormal);
   float cosEye = clamp(dot(n, toEye), 1e-4, 1.0), ior = surfaceValues.z;
+  vec3 fromSun = sun;
+#ifdef SUN_IS_SHADOWED
+  fromSun *= pldShadow(0, viewPosition);
+#endif
   vec3 reflected = here.rgb, transmission = vec3(0.0), around = vec3(0.0);
   if (cutoff > 0.0) {  // as the light pass
     around = here.a * here.rgb * ambient;
-    reflected *= sun * max(dot(n, toSun), 0.0) / 3.14159265 + ambient;
+    reflected *= fromSun * max(dot(n, toSun), 0.0) / 3.14159265 + ambient;
   } else if (unlit == 0) {
     float f = fresnel(cosEye, ior);
     vec3 albedo = here.rgb * (1.0 - surfaceValues.y) * (1.0 - f);
-    reflected = (albedo + vec3(f)) * ambient + reflectSun(n, toEye, albedo, ior, surfaceValues.x) * sun;
+    reflected = (albedo + vec3(f)) * ambient + reflectSun(n, toEye, albedo, ior, surfaceValues.x) * fromSun;
     transmission = here.rgb * surfaceValues.y * (1.0 - f);
   }
   PldSurface surface = pldSurface(here.a * reflected, here.a, transmission, viewPosition);
@@ -177,6 +192,23 @@ void main() {
 #else
   pldWriteFragment(surface);
 #endif
+}
+)";
+
+// In the sun's view space, which looks down -z.
+inline const std::string kCaster = kMaterial + kFresnel + R"(
+void main() {
+  vec4 here = baseHere();
+  vec3 n = normalize(viewNormal);
+  PldCaster caster;
+  caster.coverage = here.a;
+  caster.transmission = vec3(0.0);
+  if (unlit == 0) caster.transmission = here.rgb * surfaceValues.y * (1.0 - fresnel(abs(n.z), surfaceValues.z));
+  caster.position = viewPosition;
+  caster.normal = n;
+  caster.eta = surfaceValues.w > 0.0 ? 1.0 / surfaceValues.z : 1.0;
+  caster.identity = pldCasterIdentity(uint(firstIndex), uint(gl_PrimitiveID));
+  pldWriteCaster(caster);
 }
 )";
 

@@ -1,7 +1,7 @@
 // A Vulkan 1.3 device without a window, under the validation layers, and what a small renderer makes on it. Everything
 // made lives as long as the device.
 #pragma once
-#define VULKAN_HPP_NO_STRUCT_CONSTRUCTORS  // structs are filled in by the names of their members
+#include <array>
 #include <forward_list>
 #include <functional>
 #include <memory>
@@ -16,14 +16,14 @@ using Commands = vk::raii::CommandBuffer;
 struct GpuImage {
   vk::Image image;
   vk::Format format = vk::Format::eUndefined;
-  vk::Extent2D extent;
+  vk::ImageAspectFlags aspect;
+  uint32_t width = 0, height = 0;
   vk::ImageView whole;                // an array where there are several layers
   std::vector<vk::ImageView> layers;  // each alone
 };
 
 struct GpuBuffer {
   vk::Buffer buffer;
-  vk::DeviceSize size = 0;
   char* mapped = nullptr;
 };
 
@@ -36,44 +36,38 @@ struct Binding {
   bool smooth = false;  // linear between texels and levels, else the nearest texel
 };
 
-// A graphics pipeline over dynamic viewport, scissor, cull mode and front face.
-struct PipelineShape {
-  std::string vertex, fragment;   // GLSL
-  std::vector<Binding> bindings;  // places and types
-  bool meshes = false;            // whether there are vertices, as engine_scene.h has them
-  std::vector<vk::Format> colours;
-  std::vector<vk::PipelineColorBlendAttachmentState> blends;
-  vk::Format depth = vk::Format::eUndefined;
+// What a pass reads, and what it draws into. An output without a format has no image.
+struct GpuPass {
+  std::vector<Binding> bindings;
+  vk::Rect2D area;
+  std::array<vk::Format, 8> formats{};
+  std::array<vk::PipelineColorBlendAttachmentState, 8> blends{};
+  std::array<vk::RenderingAttachmentInfo, 8> outputs{};
+  vk::Format depthFormat = vk::Format::eUndefined;  // or depth is tested
   vk::CompareOp compare = vk::CompareOp::eAlways;
   bool writesDepth = false;
+  vk::RenderingAttachmentInfo depth;
 };
+vk::RenderingAttachmentInfo target(vk::ImageView view, vk::AttachmentLoadOp load, const vk::ClearValue& clear = {});
 
 struct GpuPipeline {
   vk::PipelineLayout layout;  // with room for 128 bytes of push constants
   vk::Pipeline pipeline;
 };
 
-// What a pass draws into.
-struct Targets {
-  vk::Rect2D area;
-  std::vector<vk::RenderingAttachmentInfo> colours;
-  vk::RenderingAttachmentInfo depth;  // without a view where there is none
-};
-vk::RenderingAttachmentInfo target(vk::ImageView view, vk::AttachmentLoadOp load, const vk::ClearValue& clear = {});
-
 class Gpu {
  public:
   Gpu();
 
-  GpuImage image(vk::Format format, vk::Extent2D extent, uint32_t layers = 1, uint32_t levels = 1);
+  GpuImage image(vk::Format format, int width, int height, uint32_t layers = 1, uint32_t levels = 1);
   //   filled  null, or `size` bytes
   GpuBuffer buffer(vk::BufferUsageFlags usage, vk::DeviceSize size, const void* filled = nullptr);
-  GpuPipeline pipeline(const PipelineShape& shape);
-  bool blends(vk::Format format) const;
+  // For passes that differ from this one in area and images alone. GLSL; with `meshes` the vertices of engine_scene.h.
+  GpuPipeline pipeline(const GpuPass& pass, const std::string& vertex, const std::string& fragment, bool meshes);
 
-  // Makes visible what was written before, begins to draw into all of the area, and binds.
-  void begin(const Commands& to, const GpuPipeline& pipeline, const Targets& into,
-             const std::vector<Binding>& bindings) const;
+  // Makes visible what was written before, binds, and draws: a triangle over all of the area, or what `draw` does.
+  void draw(const Commands& to, const GpuPipeline& pipeline, const GpuPass& pass,
+            const std::function<void()>& draw = nullptr) const;
   // Records, submits and waits.
   void run(const std::function<void(const Commands&)>& record) const;
   // All components as floats, of formats that have such.
@@ -83,10 +77,9 @@ class Gpu {
   vk::raii::DeviceMemory memory(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted) const;
   vk::raii::ShaderModule compile(const std::string& text, bool vertex) const;
   template <class Handle>
-  auto keep(Handle&& made) {
-    const auto kept = std::make_shared<Handle>(std::move(made));
-    kept_.push_front(kept);
-    return **kept;
+  auto keep(Handle made) {
+    kept_.push_front(std::make_shared<Handle>(std::move(made)));
+    return **static_cast<Handle*>(kept_.front().get());
   }
 
   vk::raii::Context context_;
@@ -99,8 +92,7 @@ class Gpu {
   std::forward_list<std::shared_ptr<void>> kept_;  // the newest goes first
 };
 
-// Errors and warnings of the validation layers so far.
-int validationMessages();
+inline int validationMessages = 0;  // errors and warnings of the layers so far
 // What was written before is seen after: one barrier for all.
 void waitForWrites(const Commands& to);
 

@@ -10,36 +10,29 @@ namespace engine {
 
 class RecipeRunner {
  public:
-  // What the host draws its transparent geometry with.
-  struct Material {
-    std::string vertex, fragment;   // GLSL; of the fragment stage what stands behind the seam
-    std::vector<Binding> bindings;  // others than the recipe's
+  struct Host {
+    const pld_recipe* recipe = nullptr;
+    int32_t width = 0, height = 0;        // of the largest picture
+    std::map<pld_role, GpuImage> images;  // of that size
+    uint64_t fragments = 0;               // room of each stage's lists, where the recipe keeps some
+    std::string vertex, fragment;         // of the host's draws; of the second what stands behind the recipe's text
+    std::vector<Binding> bindings;        // of these, others than the recipe's
   };
+  RecipeRunner(Gpu& gpu, Host host);
 
-  //   images     by role, of the largest picture's size
-  //   fragments  room of each stage's lists, where the recipe keeps some
-  RecipeRunner(Gpu& gpu, const pld_recipe* recipe, vk::Extent2D extent, std::map<pld_role, GpuImage> images,
-               uint64_t fragments, Material material);
-
-  // Records a frame.
-  //   draw  the meshes of a stage into an area, all else being bound
-  using Draw = std::function<void(const Commands&, const GpuPipeline&, pld_stage, vk::Rect2D)>;
-  void record(const Commands& to, const pld_frame& frame, const Draw& draw);
+  // Records a frame or, of shadow maps, a face; the other is null.
+  //   draw  the host's meshes of a stage, all else being bound
+  using Draw = std::function<void(const GpuPipeline&, pld_stage)>;
+  void record(const Commands& to, const pld_frame* frame, const pld_shadow_view* face, const Draw& draw);
   // After it ran: whether every list had room.
   bool hadRoom() const;
+  const GpuImage& image(pld_role role) const { return host_.images.at(role); }
 
  private:
-  GpuPipeline pipelineOf(const pld_recipe_pass& pass);
-  std::vector<Binding> bindingsOf(const pld_recipe_pass& pass, uint32_t repeat, vk::DeviceSize constants) const;
-  Targets targetsOf(const pld_recipe_pass& pass, uint32_t repeat, vk::Rect2D area) const;
-  void run(const Commands& to, uint32_t index, uint32_t repeat, vk::Rect2D area, vk::DeviceSize constants,
-           const Draw& draw);
+  GpuPass passOf(const pld_recipe_pass& pass, uint32_t turn, vk::DeviceSize constants) const;
 
   Gpu& gpu_;
-  const pld_recipe* recipe_;
-  vk::Extent2D extent_;
-  uint64_t fragments_;
-  Material material_;
+  Host host_;
   std::vector<GpuImage> images_;
   std::vector<GpuBuffer> buffers_;
   std::vector<vk::DeviceSize> zeroed_;

@@ -44,10 +44,15 @@ done
 for asked in phenomenological front+tail phenomenological:half weighted:published phenomenological:exact; do
   same foliage $asked,rims up
 done
+# The sun's shadow map of what is transparent, on opaque things and on layers.
+for asked in phenomenological weighted:half phenomenological:exact; do
+  same ball $asked,shadows up
+done
+same mixed phenomenological,low,shadows up
 # Rows that run down: texels of the pyramid lie elsewhere, so what frosted glass spreads differs by some 1e-5.
 same mixed phenomenological,low down
 same foliage phenomenological,rims down
-same ball phenomenological down
+same ball phenomenological,shadows down
 
 # A device that cannot blend into a plane says so and draws nothing wrong.
 if ! "$programs/pellucid_vulkan" "$out/ball.glb" "$out/vulkan" $size phenomenological:published up >"$out/vulkan.txt" 2>&1; then
