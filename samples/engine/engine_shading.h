@@ -66,7 +66,7 @@ layout(binding = 18) uniform sampler2DArray baseTextures;
 vec4 baseHere() {
   vec4 here = base * vertexColour;
   if (baseLayer >= 0) here *= texture(baseTextures, vec3(vertexUv, float(baseLayer)));
-  if (cutoff > 0.0) here.a = clamp((here.a - cutoff) / max(fwidth(here.a), 1e-4) + 0.5, 0.0, 1.0);
+  if (cutoff > 0.0) here.a = clamp((here.a - cutoff) / max(fwidthFine(here.a), 1e-4) + 0.5, 0.0, 1.0);
   return here;
 }
 )";

@@ -36,7 +36,7 @@ struct Binding {
   bool smooth = false;  // linear between texels and levels, else the nearest texel
 };
 
-// What a pass reads, and what it draws into. An output without a format has no image.
+// What a pass reads, and what it draws into: no recipe has more than 8 outputs. One without a format has no image.
 struct GpuPass {
   std::vector<Binding> bindings;
   vk::Rect2D area;

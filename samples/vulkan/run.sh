@@ -7,18 +7,19 @@ mkdir -p "$out/gl" "$out/vulkan"
 size=352x198
 for sample in ball mixed foliage; do "$programs/pellucid_samples" "$out" $sample 198 >/dev/null; done
 
-# differs NAME: what the program that ran last gives against GL's. Rasterised attributes belong to each driver. At edges
-# of triangles, and where a polished surface's highlight turns a last bit of a normal into some percent, four pixels
-# (one in 17,000) may be off by any amount; one in 100 by more than 1e-5, which is rounding behind a division, or a step
-# of a half; no other.
+# differs NAME MANY SOME: what the program that ran last gives against GL's. Rasterised attributes belong to each driver.
+# At edges of triangles, and where a polished surface's highlight turns a last bit of a normal into some percent, MANY
+# percent of the pixels may be off by any amount; SOME percent by more than 1e-5, which is rounding behind a division.
+# They are .006 (four pixels of 69,696) and 1; and .01 and 2 where planes are half floats or bytes, since a last bit that
+# differs is there a step of 5e-4 of a value, or of 1/255, and lies under every rim of a leaf.
 differs() {
   for picture in gl vulkan; do oiiotool "$out/$picture/$1.exr" --ch R,G,B -o "$out/$picture/$1-rgb.exr"; done
-  for limits in ".001 .006" ".00001 1"; do
+  for limits in ".001 $2" ".00001 $3"; do
     read -r most percent <<<"$limits"
     oiiotool --fail "$most" --failpercent "$percent" --hardfail 1000 --warn 1000 \
       "$out/gl/$1-rgb.exr" "$out/vulkan/$1-rgb.exr" --diff >"$out/diff.txt" || { cat "$out/diff.txt"; exit 1; }
   done
-  echo "  $1: within .001 but for .006 % of the pixels at most, within 1e-5 but for 1 %"
+  echo "  $1: within .001 but for $2 % of the pixels at most, within 1e-5 but for $3 %"
 }
 
 # same SAMPLE METHOD ROWS
@@ -28,8 +29,11 @@ same() {
   "$programs/pellucid_vulkan" "$out/$1.glb" "$out/vulkan" $size $2 $3 >"$out/vulkan.txt" 2>&1 ||
     { cat "$out/vulkan.txt"; exit 1; }
   echo "$1, $2, rows $3: $(tail -n 1 "$out/vulkan.txt")"
-  differs opaque
-  differs frame
+  differs opaque .006 1
+  case $2 in
+    *:half* | *:published*) differs frame .01 2 ;;
+    *) differs frame .006 1 ;;
+  esac
 }
 
 for asked in weighted phenomenological front+tail weighted:half phenomenological:half front+tail:half \
