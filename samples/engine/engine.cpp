@@ -1,8 +1,9 @@
 // The smallest deferred engine that has transparency: G-buffer, light pass, Pellucid's pass, resolve. Of Pellucid it
 // knows the public header alone. Headless by EGL, or in a window.
 //
-//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER]] [window[:FRAMES]]
+//   engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER][,rims][,low][,shadows]] [window[:FRAMES]]
 //   METHOD: phenomenological, weighted, front+tail; TIER: float, half, published, exact
+//   rims: ambient occlusion at rims of leaves; low: smoke at half the resolution; shadows: of what is transparent
 //
 // Draws the glTF's transparent primitives over a room of its own, and writes OUTDIR/opaque.exr (colour and Z, what
 // `pellucid composite` takes) and OUTDIR/frame.exr. `window` walks around them until it is closed; with FRAMES it
@@ -18,7 +19,7 @@
 #include <exception>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,68 +35,47 @@ void check(pld_status status, pld_pass* pass) {
   if (status != PLD_OK) stop(std::string(pld_status_name(status)) + ": " + pld_message(pass));
 }
 
-struct DrawnMesh {
-  GLuint array = 0;
-  GLsizei count = 0;
-  glm::mat4 worldFromObject{1.0f};
-  Material material;
-};
-
-DrawnMesh upload(const Mesh& mesh) {
-  DrawnMesh drawn;
-  GLuint buffers[2];
-  glCreateBuffers(2, buffers);
-  glNamedBufferData(buffers[0], static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)), mesh.vertices.data(),
-                    GL_STATIC_DRAW);
-  glNamedBufferData(buffers[1], static_cast<GLsizeiptr>(mesh.indices.size() * 4), mesh.indices.data(), GL_STATIC_DRAW);
-  glCreateVertexArrays(1, &drawn.array);
-  glVertexArrayVertexBuffer(drawn.array, 0, buffers[0], 0, sizeof(Vertex));
-  glVertexArrayElementBuffer(drawn.array, buffers[1]);
-  for (GLuint i = 0; i < 2; ++i) {
-    glEnableVertexArrayAttrib(drawn.array, i);
-    glVertexArrayAttribFormat(drawn.array, i, 3, GL_FLOAT, GL_FALSE, i * 12);
-    glVertexArrayAttribBinding(drawn.array, i, 0);
-  }
-  drawn.count = static_cast<GLsizei>(mesh.indices.size());
-  drawn.worldFromObject = mesh.worldFromObject;
-  drawn.material = mesh.material;
-  return drawn;
-}
-
 const char* const kVersion = "#version 450 core\n";
 
-const std::string kMeshVertex = std::string(R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-uniform mat4 viewFromObject, clipFromView;
-uniform mat3 normalFromObject;
-out vec3 viewPosition, viewNormal;
-)") + kMeshBody;
+GLuint bufferOf(const void* data, std::size_t size) {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  glNamedBufferData(name, static_cast<GLsizeiptr>(size), data, GL_DYNAMIC_DRAW);
+  return name;
+}
 
-const std::string kGBuffer = std::string(R"(
-in vec3 viewPosition, viewNormal;
-uniform vec4 base;
-layout(location = 0) out vec4 albedo;
-layout(location = 1) out vec4 normal;
-)") + kGBufferBody;
+// One vertex array of all meshes.
+GLuint upload(const Scene& scene) {
+  GLuint array = 0, offset = 0;
+  glCreateVertexArrays(1, &array);
+  glVertexArrayVertexBuffer(array, 0, bufferOf(scene.vertices.data(), scene.vertices.size() * sizeof(Vertex)), 0,
+                            sizeof(Vertex));
+  glVertexArrayElementBuffer(array, bufferOf(scene.indices.data(), scene.indices.size() * 4));
+  for (GLuint i = 0; i < 4; ++i) {
+    constexpr GLint components[] = {3, 3, 4, 2};  // of Vertex
+    glEnableVertexArrayAttrib(array, i);
+    glVertexArrayAttribFormat(array, i, components[i], GL_FLOAT, GL_FALSE, offset);
+    glVertexArrayAttribBinding(array, i, 0);
+    offset += static_cast<GLuint>(components[i]) * 4;
+  }
+  return array;
+}
 
-const char* const kFullscreen =
-    "void main() { gl_Position = vec4(vec2((gl_VertexID & 1) << 2, (gl_VertexID & 2) << 1) - vec2(1.0), 0.5, 1.0); }";
-
-const std::string kLight = std::string(R"(
-layout(binding = 0) uniform sampler2D albedo;
-layout(binding = 1) uniform sampler2D normal;
-layout(binding = 2) uniform sampler2D depth;
-uniform vec3 toSun, sun, ambient;
-out vec4 lit;
-)") + kLightBody;
-
-const std::string kGlass = std::string(R"(
-in vec3 viewPosition, viewNormal;
-uniform vec4 base, surfaceValues;
-uniform ivec2 kinds;
-uniform vec3 toSun, sun, ambient;
-)") + kGlassBody;
+GLuint uploadTextures(const Scene& scene) {
+  GLuint name = 0;
+  auto edge = static_cast<GLsizei>(kTextureEdge);
+  const auto layers = static_cast<GLsizei>(scene.textureLevels.back().size());
+  if (layers == 0) return name;
+  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
+  glTextureStorage3D(name, kTextureLevels, GL_RGBA16F, edge, edge, layers);
+  for (std::size_t level = 0; level < kTextureLevels; ++level, edge /= 2)
+    glTextureSubImage3D(name, static_cast<GLint>(level), 0, 0, 0, edge, edge, layers, GL_RGBA, GL_HALF_FLOAT,
+                        scene.textureLevels[level].data());
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return name;
+}
 
 GLuint program(const std::string& vertex, const std::string& fragment) {
   const GLuint name = glCreateProgram();
@@ -122,14 +102,19 @@ GLuint program(const std::string& vertex, const std::string& fragment) {
 
 class Engine {
  public:
-  Engine(const Scene& scene, int width, int height, const Asked& asked) : width_(width), height_(height) {
-    for (const Mesh& mesh : scene.meshes) meshes_.push_back(upload(mesh));
+  Engine(const Scene& scene, int width, int height, const Asked& asked)
+      : width_(width), height_(height), features_(asked.features) {
+    meshes_ = upload(scene);
+    textures_ = uploadTextures(scene);
+    sceneNumbers_ = bufferOf(nullptr, sizeof(SceneNumbers));
+    meshNumbers_ = bufferOf(nullptr, sizeof(MeshNumbers));
     albedo_ = texture(GL_RGBA16F);
     normal_ = texture(GL_RGBA32F);
     lit_ = texture(GL_RGBA32F);
     depth_ = texture(GL_DEPTH_COMPONENT32F);
+    occlusion_ = texture(GL_R32F);
     frame_ = texture(GL_RGBA32F);
-    glCreateFramebuffers(3, frames_);
+    glCreateFramebuffers(4, frames_);
     glNamedFramebufferTexture(frames_[0], GL_COLOR_ATTACHMENT0, albedo_, 0);
     glNamedFramebufferTexture(frames_[0], GL_COLOR_ATTACHMENT1, normal_, 0);
     glNamedFramebufferTexture(frames_[0], GL_DEPTH_ATTACHMENT, depth_, 0);
@@ -137,9 +122,10 @@ class Engine {
     glNamedFramebufferDrawBuffers(frames_[0], 2, both);
     glNamedFramebufferTexture(frames_[1], GL_COLOR_ATTACHMENT0, lit_, 0);
     glNamedFramebufferTexture(frames_[2], GL_COLOR_ATTACHMENT0, frame_, 0);
+    glNamedFramebufferTexture(frames_[3], GL_COLOR_ATTACHMENT0, occlusion_, 0);
     glCreateVertexArrays(1, &nothing_);
     opaque_ = program(kMeshVertex, kGBuffer);
-    light_ = program(kFullscreen, kLight);
+    hiding_ = program(kFullScreen, kOcclusion);
 
     pld_create_info info{};
     info.struct_size = sizeof(info);
@@ -155,14 +141,30 @@ class Engine {
     info.texture_unit = 4;
     if (pld_create(&info, &pass_) != PLD_OK) stop("no pass");
     check(pld_resize(pass_, width, height), pass_);
-    if (asked.method == PLD_METHOD_FRONT_TAIL && asked.tier != PLD_TIER_EXACT) addStage(PLD_STAGE_FRONT);
-    addStage(PLD_STAGE_LAYERS);
+    std::string lookups;
+    if (asked.shadows) lookups = addShadows();
+    light_ = program(kFullScreen, lookups + kLight);
+    const bool front = asked.method == PLD_METHOD_FRONT_TAIL, rims = features_ & PLD_FEATURE_RIMS;
+    if (front && asked.tier != PLD_TIER_EXACT) addStage(PLD_STAGE_FRONT, lookups);
+    addStage(PLD_STAGE_LAYERS, lookups);
+    if (rims && !front && asked.tier != PLD_TIER_PUBLISHED) addStage(PLD_STAGE_RIMS, lookups);
+    if (features_ & PLD_FEATURE_LOW_RESOLUTION) addStage(PLD_STAGE_LOW, lookups);
   }
   ~Engine() { pld_destroy(&pass_); }
 
   void draw(const Scene& scene) {
-    clipFromView_ = clipFromView(scene, width_, height_);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glBindBufferBase(GL_UNIFORM_BUFFER, kSceneBinding, sceneNumbers_);
+    glBindBufferBase(GL_UNIFORM_BUFFER, kMeshBinding, meshNumbers_);
+    glBindTextureUnit(kTexturesBinding, textures_);
+    if (casters_) drawShadows(scene);
+    const SceneNumbers numbers = sceneNumbers(scene, width_, height_, true);
+    glNamedBufferSubData(sceneNumbers_, 0, sizeof(numbers), &numbers);
+    for (const auto& [binding, texture] : {std::pair{kDepthBinding, depth_},
+                                           {kNormalBinding, normal_},
+                                           {kAlbedoBinding, albedo_},
+                                           {kOcclusionBinding, occlusion_}})
+      glBindTextureUnit(binding, texture);
     glViewport(0, 0, width_, height_);
 
     glBindFramebuffer(GL_FRAMEBUFFER, frames_[0]);
@@ -172,24 +174,22 @@ class Engine {
     glDepthMask(GL_TRUE);
     for (GLint i = 0; i < 2; ++i) glClearNamedFramebufferfv(frames_[0], GL_COLOR, i, black);
     glClearNamedFramebufferfv(frames_[0], GL_DEPTH, 0, &nothing);
-    drawMeshes(scene, opaque_, false);
+    drawMeshes(scene, scene.viewFromWorld, opaque_, std::nullopt);
     glDisable(GL_DEPTH_TEST);
-
-    glBindFramebuffer(GL_FRAMEBUFFER, frames_[1]);
-    glUseProgram(light_);
-    setLights(scene, light_);
-    glBindTextureUnit(0, albedo_);
-    glBindTextureUnit(1, normal_);
-    glBindTextureUnit(2, depth_);
     glBindVertexArray(nothing_);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    for (const auto& [frame, name] : {std::pair{frames_[3], hiding_}, {frames_[1], light_}}) {
+      glBindFramebuffer(GL_FRAMEBUFFER, frame);
+      glUseProgram(name);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
 
     pld_frame frame = frameOf(scene, width_, height_);
     frame.colour_texture = lit_;
     frame.depth_texture = depth_;
-    for (const auto& [stage, material] : stages_) {
+    frame.occlusion_texture = occlusion_;
+    for (const auto& [stage, name] : stages_) {
       check(pld_begin(pass_, stage, &frame), pass_);
-      drawMeshes(scene, material, true);
+      drawMeshes(scene, scene.viewFromWorld, name, stage);
       check(pld_end(pass_), pass_);
     }
     pld_target target{};
@@ -237,48 +237,58 @@ class Engine {
       glReadPixels(0, 0, width_, height_, format, GL_FLOAT, texels.data());
     return texels;
   }
-  void addStage(pld_stage stage) {
+  // Returns what goes before shaders that ask the sun's light.
+  std::string addShadows() {
+    const pld_shadow_info maps = shadowMaps();
+    check(pld_shadow_resize(pass_, &maps), pass_);
+    const char *caster = nullptr, *lookup = nullptr;
+    check(pld_shadow_glsl(pass_, PLD_SHADOW_TEXT_CASTER, 450, &caster), pass_);
+    casters_ = program(kMeshVertex, caster + kCaster);
+    check(pld_shadow_glsl(pass_, PLD_SHADOW_TEXT_LOOKUP, 450, &lookup), pass_);
+    return "#define SUN_IS_SHADOWED\n" + std::string(lookup);
+  }
+  void drawShadows(const Scene& scene) {
+    const SunView sun = sunViewOf(scene);
+    const SceneNumbers numbers = sceneNumbers(sun);
+    glNamedBufferSubData(sceneNumbers_, 0, sizeof(numbers), &numbers);
+    check(pld_shadow_begin(pass_, &sun.view), pass_);
+    drawMeshes(scene, sun.lightFromWorld, casters_, PLD_STAGE_CASTERS);
+    check(pld_shadow_end(pass_), pass_);
+    uint64_t texture = 0, buffer = 0;
+    check(pld_query(pass_, PLD_VALUE_SHADOW_TEXTURE, &texture), pass_);
+    check(pld_query(pass_, PLD_VALUE_SHADOW_BUFFER, &buffer), pass_);
+    glBindTextureUnit(kShadowMapsBinding, static_cast<GLuint>(texture));
+    glBindBufferBase(GL_UNIFORM_BUFFER, kShadowTableBinding, static_cast<GLuint>(buffer));
+  }
+  void addStage(pld_stage stage, const std::string& lookups) {
     const char* seam = nullptr;
     check(pld_glsl(pass_, stage, 450, &seam), pass_);
-    stages_.emplace_back(stage, program(kMeshVertex, seam + std::string(kGlass)));
+    const std::string rims = features_ & PLD_FEATURE_RIMS ? "#define RIMS_OF_LEAVES\n" : "";
+    stages_.emplace_back(stage, program(kMeshVertex, seam + rims + lookups + kGlass));
     check(pld_connect(pass_, stages_.back().second), pass_);
   }
-  void setLights(const Scene& scene, GLuint name) const {
-    const glm::vec3 toSun = glm::normalize(glm::mat3(scene.viewFromWorld) * scene.toSun);
-    glUniform3fv(glGetUniformLocation(name, "toSun"), 1, &toSun.x);
-    glUniform3fv(glGetUniformLocation(name, "sun"), 1, &scene.sun.x);
-    glUniform3fv(glGetUniformLocation(name, "ambient"), 1, &kAmbient.x);
-  }
-  void drawMeshes(const Scene& scene, GLuint name, bool transparent) const {
+  // Of a stage of Pellucid's pass, or of the G-buffer.
+  void drawMeshes(const Scene& scene, const glm::mat4& viewFromWorld, GLuint name,
+                  std::optional<pld_stage> stage) const {
     glUseProgram(name);
-    setLights(scene, name);
-    glUniformMatrix4fv(glGetUniformLocation(name, "clipFromView"), 1, GL_FALSE, glm::value_ptr(clipFromView_));
-    for (const DrawnMesh& mesh : meshes_) {
-      const Material& material = mesh.material;
-      if (material.transparent() != transparent) continue;
-      const glm::mat4 viewFromObject = scene.viewFromWorld * mesh.worldFromObject;
-      const glm::mat3 normals = glm::transpose(glm::inverse(glm::mat3(viewFromObject)));
-      glUniformMatrix4fv(glGetUniformLocation(name, "viewFromObject"), 1, GL_FALSE, glm::value_ptr(viewFromObject));
-      glUniformMatrix3fv(glGetUniformLocation(name, "normalFromObject"), 1, GL_FALSE, glm::value_ptr(normals));
-      glUniform4fv(glGetUniformLocation(name, "base"), 1, &material.base.x);
-      if (transparent) {
-        glUniform4f(glGetUniformLocation(name, "surfaceValues"), material.roughness, material.transmission,
-                    material.ior, material.thickness);
-        glUniform2i(glGetUniformLocation(name, "kinds"), material.unlit, material.thickness > 0.0f);
-      }
-      (material.bothSides ? glDisable : glEnable)(GL_CULL_FACE);
-      glBindVertexArray(mesh.array);
-      glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
+    glBindVertexArray(meshes_);
+    for (const Mesh& mesh : scene.meshes) {
+      if (stage ? !isDrawnIn(*stage, mesh.material, features_) : !mesh.material.opaque()) continue;
+      const MeshNumbers numbers = meshNumbers(viewFromWorld, mesh);
+      glNamedBufferSubData(meshNumbers_, 0, sizeof(numbers), &numbers);
+      (mesh.material.bothSides ? glDisable : glEnable)(GL_CULL_FACE);
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indexCount), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(std::uintptr_t{mesh.firstIndex} * 4));
     }
     glDisable(GL_CULL_FACE);
   }
 
   int width_, height_;
-  GLuint albedo_ = 0, normal_ = 0, lit_ = 0, depth_ = 0, frame_ = 0, frames_[3] = {}, nothing_ = 0, opaque_ = 0,
-         light_ = 0;
-  std::vector<DrawnMesh> meshes_;
+  uint32_t features_;
+  GLuint albedo_ = 0, normal_ = 0, lit_ = 0, depth_ = 0, occlusion_ = 0, frame_ = 0, frames_[4] = {}, nothing_ = 0,
+         opaque_ = 0, casters_ = 0, hiding_ = 0, light_ = 0, meshes_ = 0, textures_ = 0, sceneNumbers_ = 0,
+         meshNumbers_ = 0;
   std::vector<std::pair<pld_stage, GLuint>> stages_;
-  glm::mat4 clipFromView_{1.0f};
   pld_pass* pass_ = nullptr;
 };
 
@@ -307,21 +317,18 @@ GLFWwindow* makeWindow(int width, int height) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count < 3 || count > 6) stop("engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER]] [window[:FRAMES]]");
-  int width = 640, height = 360;
-  if (count > 3 && (std::sscanf(arguments[3], "%dx%d", &width, &height) != 2 || width < 1 || height < 1))
-    stop("expected WIDTHxHEIGHT");
-  const Asked asked = askedFor(count > 4 ? arguments[4] : "phenomenological");
-  const std::string folder = arguments[2];
-  const std::string shows = count > 5 ? arguments[5] : "";
+  const Arguments asked =
+      argumentsOf(count, arguments,
+                  "engine GLASS.glb OUTDIR [WIDTHxHEIGHT] [METHOD[:TIER][,rims][,low][,shadows]] [window[:FRAMES]]");
+  const std::string &folder = asked.folder, &shows = asked.last;
   int frames = 0;
   if (!shows.empty() && shows != "window" && (std::sscanf(shows.c_str(), "window:%d", &frames) != 1 || frames < 1))
     stop("expected window or window:FRAMES, found " + shows);
   try {
-    GLFWwindow* const window = shows.empty() ? nullptr : makeWindow(width, height);
+    GLFWwindow* const window = shows.empty() ? nullptr : makeWindow(asked.width, asked.height);
     if (!window) makeContext();
-    Scene scene = readScene(arguments[1]);
-    Engine engine(scene, width, height, asked);
+    Scene scene = readScene(asked.glass);
+    Engine engine(scene, asked.width, asked.height, asked.asked);
     engine.draw(scene);
     engine.draw(scene);  // what a first frame compiles is no matter of its time
     engine.write(folder + "/opaque.exr", engine.lit());

@@ -7,19 +7,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
+
+#include "samples/engine/engine_shading.h"
 
 namespace engine {
 namespace {
-
-using nlohmann::json;
 
 void addBox(Scene& scene, glm::vec3 centre, glm::vec3 half, glm::vec3 colour) {
   std::vector<Vertex> vertices;
@@ -31,17 +29,26 @@ void addBox(Scene& scene, glm::vec3 centre, glm::vec3 half, glm::vec3 colour) {
     v = glm::cross(normal, u);
     const auto first = static_cast<std::uint32_t>(vertices.size());
     for (const auto& corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)})
-      vertices.push_back({centre + half * (normal + corner.x * u + corner.y * v), normal});
+      vertices.push_back(
+          {centre + half * (normal + corner.x * u + corner.y * v), normal, glm::vec4(1.0f), glm::vec2(0.0f)});
     for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + i);
   }
-  Mesh mesh;
-  mesh.vertices = std::move(vertices);
-  mesh.indices = std::move(indices);
-  mesh.material.base = glm::vec4(colour, 1.0f);
-  scene.meshes.push_back(std::move(mesh));
+  Material material;
+  material.base = glm::vec4(colour, 1.0f);
+  addMesh(scene, vertices, indices, glm::mat4(1.0f), material);
 }
 
-// A floor, a wall and blocks around what is transparent: something to be seen through it.
+}  // namespace
+
+void addMesh(Scene& scene, const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices,
+             const glm::mat4& worldFromObject, const Material& material) {
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  scene.meshes.push_back({static_cast<std::uint32_t>(scene.indices.size()), static_cast<std::uint32_t>(indices.size()),
+                          worldFromObject, material});
+  scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
+  for (const std::uint32_t i : indices) scene.indices.push_back(first + i);
+}
+
 void addRoom(Scene& scene) {
   const glm::vec3 centre = 0.5f * (scene.least + scene.most), size = scene.most - scene.least;
   const float r = std::max(size.x, std::max(size.y, size.z));
@@ -61,123 +68,9 @@ void addRoom(Scene& scene) {
   block(0.15f, -0.75f, 0.02f, 0.2f * size.y, {0.75f, 0.1f, 0.1f});  // stands in front
 }
 
-struct Gltf {
-  json root;
-  std::vector<char> bytes;
-
-  const char* at(const json& accessor) const {
-    const json& view = root.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
-    return bytes.data() + view.value("byteOffset", std::size_t{0}) + accessor.value("byteOffset", std::size_t{0});
-  }
-  std::vector<glm::vec3> vectors(const json& accessor) const {
-    if (accessor.at("componentType") != 5126 || accessor.at("type") != "VEC3")
-      stop("positions and normals are float here");
-    std::vector<glm::vec3> values(accessor.at("count").get<std::size_t>());
-    std::memcpy(values.data(), at(accessor), values.size() * sizeof(glm::vec3));
-    return values;
-  }
-  std::vector<std::uint32_t> indices(const json& accessor) const {
-    std::vector<std::uint32_t> values(accessor.at("count").get<std::size_t>());
-    const int kind = accessor.at("componentType");
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (kind == 5125) std::memcpy(&values[i], at(accessor) + 4 * i, 4);
-      std::uint16_t two = 0;
-      if (kind == 5123) std::memcpy(&two, at(accessor) + 2 * i, 2), values[i] = two;
-      if (kind == 5121) values[i] = static_cast<unsigned char>(at(accessor)[i]);
-    }
-    return values;
-  }
-};
-
-Gltf read(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> all((std::istreambuf_iterator<char>(file)), {});
-  std::uint32_t header[5] = {};
-  if (all.size() >= 28) std::memcpy(header, all.data(), sizeof header);
-  if (header[0] != 0x46546c67 || all.size() < 28 + std::size_t{header[3]}) stop(path + ": no GLB");
-  Gltf gltf;
-  gltf.root = json::parse(all.data() + 20, all.data() + 20 + header[3]);
-  gltf.bytes.assign(all.begin() + 28 + header[3], all.end());
-  return gltf;
-}
-
-glm::mat4 transformOf(const json& node) {
-  if (node.contains("matrix")) return glm::make_mat4(node["matrix"].get<std::vector<float>>().data());
-  const auto t = node.value("translation", std::vector<float>{0, 0, 0}),
-             s = node.value("scale", std::vector<float>{1, 1, 1}),
-             q = node.value("rotation", std::vector<float>{0, 0, 0, 1});
-  return glm::translate(glm::mat4(1.0f), glm::vec3(t[0], t[1], t[2])) *
-         glm::mat4_cast(glm::quat(q[3], q[0], q[1], q[2])) * glm::scale(glm::mat4(1.0f), glm::vec3(s[0], s[1], s[2]));
-}
-
-Material materialOf(const json& source) {
-  Material material;
-  const json none = json::object(), pbr = source.value("pbrMetallicRoughness", none),
-             more = source.value("extensions", none);
-  const auto base = pbr.value("baseColorFactor", std::vector<float>{1, 1, 1, 1});
-  material.base = glm::vec4(base[0], base[1], base[2], base[3]);
-  material.roughness = pbr.value("roughnessFactor", 1.0f);
-  material.blend = source.value("alphaMode", "OPAQUE") == "BLEND";
-  material.unlit = more.contains("KHR_materials_unlit");
-  material.transmission = more.value("KHR_materials_transmission", none).value("transmissionFactor", 0.0f);
-  material.ior = more.value("KHR_materials_ior", none).value("ior", 1.5f);
-  material.thickness = more.value("KHR_materials_volume", none).value("thicknessFactor", 0.0f);
-  // Light meets a volume's boundary twice, whatever doubleSided says.
-  material.bothSides = material.thickness > 0.0f || source.value("doubleSided", false);
-  return material;
-}
-
-void addNode(Scene& scene, const Gltf& gltf, std::size_t index, const glm::mat4& parent) {
-  const json& node = gltf.root.at("nodes").at(index);
-  const glm::mat4 world = parent * transformOf(node);
-  if (node.contains("camera")) {
-    scene.viewFromWorld = glm::inverse(world);
-    scene.yfov = gltf.root.at("cameras").at(node["camera"].get<std::size_t>()).at("perspective").at("yfov");
-  }
-  if (node.contains("extensions") && node["extensions"].contains("KHR_lights_punctual")) {
-    const json& lights = gltf.root.at("extensions").at("KHR_lights_punctual").at("lights");
-    const json& light = lights.at(node["extensions"]["KHR_lights_punctual"].at("light").get<std::size_t>());
-    const auto colour = light.value("color", std::vector<float>{1, 1, 1});
-    scene.toSun = glm::normalize(glm::vec3(world[2]));
-    scene.sun = glm::vec3(colour[0], colour[1], colour[2]) * (light.value("intensity", 1.0f) / 683.0f);  // lux
-  }
-  if (node.contains("mesh"))
-    for (const json& primitive : gltf.root.at("meshes").at(node["mesh"].get<std::size_t>()).at("primitives")) {
-      const json &accessors = gltf.root.at("accessors"), &attributes = primitive.at("attributes");
-      const auto positions = gltf.vectors(accessors.at(attributes.at("POSITION").get<std::size_t>()));
-      const auto normals = gltf.vectors(accessors.at(attributes.at("NORMAL").get<std::size_t>()));
-      std::vector<Vertex> vertices;
-      const Material material = materialOf(gltf.root.at("materials").at(primitive.at("material").get<std::size_t>()));
-      for (std::size_t i = 0; i < positions.size(); ++i) {
-        vertices.push_back({positions[i], normals[i]});
-        const glm::vec3 place(world * glm::vec4(positions[i], 1.0f));
-        scene.least = glm::min(scene.least, place);
-        scene.most = glm::max(scene.most, place);
-      }
-      Mesh mesh;
-      mesh.vertices = std::move(vertices);
-      mesh.indices = gltf.indices(accessors.at(primitive.at("indices").get<std::size_t>()));
-      mesh.worldFromObject = world;
-      mesh.material = material;
-      scene.meshes.push_back(std::move(mesh));
-    }
-  for (const json& child : node.value("children", json::array())) addNode(scene, gltf, child.get<std::size_t>(), world);
-}
-
-}  // namespace
-
 void stop(const std::string& why) {
   std::fprintf(stderr, "engine: %s\n", why.c_str());
   std::exit(1);
-}
-
-Scene readScene(const std::string& path) {
-  Scene scene;
-  const Gltf gltf = read(path);
-  for (const json& root : gltf.root.at("scenes").at(0).at("nodes"))
-    addNode(scene, gltf, root.get<std::size_t>(), glm::mat4(1.0f));
-  addRoom(scene);
-  return scene;
 }
 
 glm::mat4 clipFromView(const Scene& scene, int width, int height) {
@@ -186,14 +79,37 @@ glm::mat4 clipFromView(const Scene& scene, int width, int height) {
   return glm::mat4(across, 0, 0, 0, 0, f, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0);
 }
 
+SceneNumbers sceneNumbers(const Scene& scene, int width, int height, bool rowsUp) {
+  const glm::vec3 toSun = glm::normalize(glm::mat3(scene.viewFromWorld) * scene.toSun);
+  const float rows = rowsUp ? 1.0f : -1.0f;
+  SceneNumbers numbers{clipFromView(scene, width, height), glm::vec4(toSun, 0.0f), glm::vec4(scene.sun, 0.0f),
+                       glm::vec4(kAmbient, rows)};
+  numbers.clipFromView[1][1] *= rows;
+  return numbers;
+}
+
+MeshNumbers meshNumbers(const glm::mat4& viewFromWorld, const Mesh& mesh) {
+  const Material& material = mesh.material;
+  return {viewFromWorld * mesh.worldFromObject,
+          material.base,
+          {material.roughness, material.transmission, material.ior, material.thickness},
+          material.cutoff,
+          material.unlit,
+          material.texture,
+          static_cast<std::int32_t>(mesh.firstIndex)};
+}
+
 Asked askedFor(const std::string& text) {
-  const std::string method = text.substr(0, text.find(':')),
-                    tier = method == text ? "float" : text.substr(method.size() + 1);
+  std::vector<std::string> words;
+  std::istringstream all(text);
+  for (std::string word; std::getline(all, word, ',');) words.push_back(word);
+  const std::string first = words.empty() ? "" : words[0], method = first.substr(0, first.find(':')),
+                    tier = method == first ? "float" : first.substr(method.size() + 1);
   const char* const methods[] = {"phenomenological", "weighted", "front+tail"};
   const char* const tiers[] = {"float", "half", "published", "exact"};
   const auto numberOf = [](const char* const* begin, const char* const* end, const std::string& name) {
     const auto place = std::find(begin, end, name);
-    if (place == end) stop("no method or tier " + name);
+    if (place == end) stop("no method, tier or feature " + name);
     return static_cast<int>(place - begin);
   };
   Asked asked{};
@@ -202,7 +118,62 @@ Asked askedFor(const std::string& text) {
   asked.features = PLD_FEATURE_COLOURED;
   if (asked.tier != PLD_TIER_PUBLISHED) asked.features |= PLD_FEATURE_LIGHT;
   if (asked.method == PLD_METHOD_PHENOMENOLOGICAL) asked.features |= PLD_FEATURE_REFRACTION | PLD_FEATURE_DIFFUSION;
+  const char* const features[] = {"rims", "low", "shadows"};
+  constexpr uint32_t bits[] = {PLD_FEATURE_RIMS, PLD_FEATURE_LOW_RESOLUTION, 0};  // shadow maps are no feature
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const int feature = numberOf(std::begin(features), std::end(features), words[i]);
+    asked.features |= bits[feature];
+    asked.shadows |= feature == 2;
+  }
   return asked;
+}
+
+Arguments argumentsOf(int count, char** arguments, const std::string& usage) {
+  if (count < 3 || count > 6) stop(usage);
+  Arguments found;
+  found.glass = arguments[1], found.folder = arguments[2];
+  if (count > 5) found.last = arguments[5];
+  if (count > 3 &&
+      (std::sscanf(arguments[3], "%dx%d", &found.width, &found.height) != 2 || found.width < 1 || found.height < 1))
+    stop("expected WIDTHxHEIGHT");
+  found.asked = askedFor(count > 4 ? arguments[4] : "phenomenological");
+  return found;
+}
+
+bool isDrawnIn(pld_stage stage, const Material& material, uint32_t features) {
+  const bool low = material.lowResolution && features & PLD_FEATURE_LOW_RESOLUTION;
+  if (stage == PLD_STAGE_LOW) return low;
+  if (stage == PLD_STAGE_CASTERS) return !material.opaque();
+  if (stage == PLD_STAGE_RIMS) return material.cutoff > 0.0f;
+  return !low && (!material.opaque() || material.cutoff > 0.0f);
+}
+
+pld_shadow_info shadowMaps() {
+  pld_shadow_info maps = pld_shadow_info_init(1024, 1, 1);
+  maps.uniform_binding = kShadowTableBinding;
+  maps.texture_unit = kShadowMapsBinding;
+  return maps;
+}
+
+SunView sunViewOf(const Scene& scene) {
+  const glm::vec3 centre = 0.5f * (scene.least + scene.most);
+  const float r = 0.5f * glm::length(scene.most - scene.least);
+  const glm::vec3 up = std::abs(scene.toSun.y) > 0.99f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  SunView sun{glm::lookAt(centre + 2.0f * r * scene.toSun, centre, up), pld_shadow_view_init(PLD_LIGHT_DIRECTIONAL)};
+  sun.view.near_depth = r, sun.view.far_depth = 3.0f * r;
+  const glm::mat4 lightFromView = sun.lightFromWorld * glm::inverse(scene.viewFromWorld);
+  glm::mat4 clipFromLight(1.0f / r);  // orthographic; reversed depth
+  clipFromLight[2][2] = 0.5f / r;
+  clipFromLight[3] = glm::vec4(0.0f, 0.0f, 1.5f, 1.0f);
+  std::memcpy(sun.view.light_from_scene, glm::value_ptr(lightFromView), sizeof(sun.view.light_from_scene));
+  std::memcpy(sun.view.projection, glm::value_ptr(clipFromLight), sizeof(sun.view.projection));
+  return sun;
+}
+
+SceneNumbers sceneNumbers(const SunView& sun) {
+  SceneNumbers numbers{};
+  numbers.clipFromView = glm::make_mat4(sun.view.projection);
+  return numbers;
 }
 
 pld_frame frameOf(const Scene& scene, int width, int height) {

@@ -136,6 +136,7 @@ TEST(BridgeMisuse, WrongOrderAndWrongFramesAreRefused) {
   for (const int size : {0, -3, 1 << 24}) expectRefused(pass, pld_resize(pass, size, 8), PLD_ERROR_SIZE, "resize");
   ASSERT_EQ(pld_resize(pass, 32, 24), PLD_OK);
   expectRefused(pass, pld_begin(pass, PLD_STAGE_LAYERS, &good), PLD_ERROR_ORDER, "layers before solids");
+  EXPECT_NE(std::string(pld_message(pass)).find("PLD_STAGE_LAYERS"), std::string::npos) << pld_message(pass);
   expectRefused(pass, pld_begin(pass, PLD_STAGE_FRONT, &good), PLD_ERROR_ORDER, "front before solids");
   expectRefused(pass, pld_begin(pass, static_cast<pld_stage>(7), &good), PLD_ERROR_ARGUMENT, "no stage");
   expectRefused(pass, pld_begin(pass, PLD_STAGE_SOLIDS, nullptr), PLD_ERROR_ARGUMENT, "null frame");
@@ -166,6 +167,11 @@ TEST(BridgeMisuse, WrongOrderAndWrongFramesAreRefused) {
   refused([](auto& f) { f.projection[5] = nan; }, PLD_ERROR_ARGUMENT, "NaN in the projection");
   refused([](auto& f) { f.projection[11] = 1.0f; }, PLD_ERROR_ARGUMENT, "a left-handed projection");
   refused([](auto& f) { f.projection[0] = 0.0f; }, PLD_ERROR_ARGUMENT, "no focal length");
+  refused([](auto& f) { f.projection[14] *= -1.0f; }, PLD_ERROR_ARGUMENT, "depth that runs against info.depth");
+  EXPECT_NE(std::string(pld_message(pass)).find("info.depth is PLD_DEPTH_DEVICE"), std::string::npos);
+  expectRefused(pass, pld_end(pass), PLD_ERROR_ORDER, "an end whose begin failed");
+  EXPECT_NE(std::string(pld_message(pass)).find("the last pld_begin failed"), std::string::npos);
+  expectRefused(pass, pld_resolve(pass, &target), PLD_ERROR_ORDER, "a frame whose begin failed");
   refused([](auto& f) { f.metres_per_unit = 0.0f; }, PLD_ERROR_ARGUMENT, "no unit");
   refused([](auto& f) { f.pre_exposure = -inf; }, PLD_ERROR_ARGUMENT, "pre_exposure");
   refused([](auto& f) { f.weight_near = f.weight_far; }, PLD_ERROR_ARGUMENT, "weight range");
