@@ -124,6 +124,8 @@ TEST(BridgeState, EveryCallLeavesGlAsItFoundIt) {
     watch.unchanged("pld_resize to another size");
     pld_frame frame = host.frame();
     if (setup.depth != PLD_DEPTH_LINEAR) frame.depth_texture = device;
+    if (setup.depth == PLD_DEPTH_REVERSED)
+      for (const int k : {10, 14}) frame.projection[k] *= -1.0f;
     for (const pld_stage stage : setup.stages) {
       pld_frame wrong = frame;
       wrong.depth_texture = other;
