@@ -45,7 +45,7 @@ uint32_t usageOf(const PlannedPass& pass, uint32_t image) {
 }  // namespace
 
 pld_recipe::pld_recipe(const Permutation& of, RecipePlan planned, const pld_recipe_info& info)
-    : permutation(of), plan(std::move(planned)) {
+    : version(info.version), permutation(of), plan(std::move(planned)) {
   addImages();
   if (plan.isOfMaps()) {
     const pld_shadow_info& maps = plan.maps;

@@ -12,6 +12,7 @@ struct pld_recipe {
   pld_recipe(const pld_recipe&) = delete;
   pld_recipe& operator=(const pld_recipe&) = delete;
 
+  uint32_t version;  // of the host's header
   pellucid::c::Permutation permutation;
   pellucid::c::RecipePlan plan;
   std::vector<pld_recipe_image> images;

@@ -8,7 +8,7 @@ namespace {
 constexpr const char* kBegin = "pld_begin";
 
 FrameJudge judgeOf(Device& device) {
-  return {device.permutation, device.isHostSince(5), device.isHostSince(15), device.message, sizeof(device.message)};
+  return {device.permutation, device.info.version, device.message, sizeof(device.message)};
 }
 
 pld_status checkLow(Device& device, const pld_frame& frame) {

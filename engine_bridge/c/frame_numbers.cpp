@@ -27,7 +27,7 @@ float depthGrowth(const float (&projection)[16]) {
 pld_status checkConvention(const FrameJudge& judge, const char* call, const pld_frame& frame) {
   const pld_depth depth = judge.permutation.depth;
   const float growth = depthGrowth(frame.projection);
-  if (!judge.isHostSince15 || depth == PLD_DEPTH_LINEAR) return PLD_OK;
+  if (!judge.isHostSince(15) || depth == PLD_DEPTH_LINEAR) return PLD_OK;
   if (depth == PLD_DEPTH_DEVICE && growth < 0.0f)
     return judge.fail(PLD_ERROR_ARGUMENT,
                       "%s: frame.projection: found depth that falls with distance, expected one that grows: info.depth "
@@ -77,7 +77,7 @@ pld_status checkNumber(const FrameJudge& judge, const char* call, const Number& 
   const auto found = static_cast<double>(number.value);
   if (!number.isRead) {
     // Hosts of 0.4 and earlier were not asked for what only scattering reads.
-    if (number.isScattered && !judge.permutation.scatters() && !judge.isHostSince5) return PLD_OK;
+    if (number.isScattered && !judge.permutation.scatters() && !judge.isHostSince(5)) return PLD_OK;
     return judge.fail(PLD_ERROR_ARGUMENT,
                       "%s: frame.%s: found %g, which this pass does not read: expected a number all the same, as 0",
                       call, number.name, found);

@@ -16,10 +16,11 @@ bool takeWhole(const pld_frame& frame, pld_frame& whole);
 // By whom a frame is judged, and where the sentence goes. Nothing is allocated.
 struct FrameJudge {
   const Permutation& permutation;
-  bool isHostSince5, isHostSince15;  // earlier hosts were asked less
+  uint32_t version;  // of the host's header: earlier hosts were asked less
   char* message;
   std::size_t size;
 
+  bool isHostSince(uint32_t minor) const { return isSince(version, minor); }
   [[gnu::format(printf, 3, 4)]] pld_status fail(pld_status status, const char* format, ...) const;
 };
 

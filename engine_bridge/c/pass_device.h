@@ -26,7 +26,7 @@ class Device {
   // Whether the context of load() is current on this thread, and not one that shares objects with it.
   bool isCurrent() const;
   // Whether the host was built with the header of this minor version or a later one.
-  bool isHostSince(uint32_t minor) const { return info.version >= (PLD_VERSION_MAJOR << 20 | minor << 10); }
+  bool isHostSince(uint32_t minor) const { return isSince(info.version, minor); }
 
   // Says why, to the message and to the log.
   [[gnu::format(printf, 3, 4)]] pld_status fail(pld_status status, const char* format, ...);

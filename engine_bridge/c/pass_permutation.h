@@ -56,6 +56,12 @@ struct Permutation {
   }
 };
 
+// Whether a host was built with the header of this minor version or a later one.
+//   version  of its header, as PLD_VERSION
+constexpr bool isSince(uint32_t version, uint32_t minor) {
+  return version >= (uint32_t{PLD_VERSION_MAJOR} << 20 | minor << 10);
+}
+
 extern const uint32_t kEveryFeature;  // pld_feature
 
 LayerModel modelOf(const Permutation& permutation);

@@ -105,7 +105,7 @@ pld_status pld_recipe_check(const pld_recipe* recipe, const pld_frame* frame, in
   char nowhere[1] = {};
   if (message && message_size > 0) message[0] = '\0';
   if (!recipe || !frame) return PLD_ERROR_ARGUMENT;
-  const FrameJudge judge{recipe->permutation, true, true, message ? message : nowhere, message ? message_size : 0};
+  const FrameJudge judge{recipe->permutation, recipe->version, message ? message : nowhere, message ? message_size : 0};
   pld_frame whole{};
   if (recipe->plan.isOfMaps()) return judge.fail(PLD_ERROR_ARGUMENT, "%s: a recipe of shadow maps has no frames", call);
   if (!takeWhole(*frame, whole))

@@ -73,7 +73,7 @@ pld_status fix(const pld_recipe_info& info, Permutation& p) {
   if (!takeWhole(*info.fixed, whole))
     return refuse(info, PLD_ERROR_VERSION, "pld_recipe_create: fixed.struct_size is that of no version");
   char text[300];
-  const FrameJudge judge{p, true, true, text, sizeof(text)};
+  const FrameJudge judge{p, info.version, text, sizeof(text)};
   if (const pld_status status = judgeNumbers(judge, "pld_recipe_create", whole, info.fixed_fields); status != PLD_OK)
     return refuse(info, status, text);
   p.fixed = whole;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "engine_bridge/include/pellucid/recipe.h"
 #include "tests/bridge/host.h"
 
 namespace pellucid::test {
@@ -154,6 +155,15 @@ TEST(BridgeMisuse, AProjectionAgainstTheDepthsConventionIsRefused) {
           EXPECT_EQ(pld_resolve(pass, &target), grows > 0.0f ? PLD_ERROR_ORDER : PLD_OK) << "of the frame before";
         }
         EXPECT_EQ(pld_destroy(&pass), PLD_OK);
+        // The frame left is one whose depth falls.
+        pld_recipe_info of = pld_recipe_info_init(PLD_DIALECT_GL, 450);
+        of.depth = depth;
+        of.version = info.version;
+        pld_recipe* recipe = nullptr;
+        ASSERT_EQ(pld_recipe_create(&of, &recipe), PLD_OK);
+        EXPECT_EQ(pld_recipe_check(recipe, &frame, 32, 24, nullptr, 0),
+                  depth == PLD_DEPTH_REVERSED || minor == 14 ? PLD_OK : PLD_ERROR_ARGUMENT);
+        EXPECT_EQ(pld_recipe_destroy(&recipe), PLD_OK);
       }
   glDeleteTextures(1, &frame.depth_texture);
 }

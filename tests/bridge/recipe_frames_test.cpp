@@ -2,7 +2,6 @@
 // numbers and blocks, a pyramid of one layer and of two, and the two loops are one.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <map>
 #include <utility>
 
@@ -143,14 +142,6 @@ int changedPixels(const Host& host, const pld_frame& frame, const std::vector<fl
       changed += picture[red] != background[red];
     }
   return changed;
-}
-
-std::size_t differingWords(const std::vector<float>& a, const std::vector<float>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  std::size_t differing = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    differing += std::memcmp(&a[i], &b[i], sizeof(float)) != 0;
-  return differing;
 }
 
 // Outside of it the recipe's images hold nothing yet.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace pellucid::test {
 namespace {
@@ -17,6 +18,14 @@ constexpr GLenum kCompares[] = {GL_ALWAYS, GL_LEQUAL, GL_GEQUAL, GL_GREATER};
 constexpr GLuint kDrawBuffers = 8;
 
 }  // namespace
+
+std::size_t differingWords(const std::vector<float>& a, const std::vector<float>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    differing += std::memcmp(&a[i], &b[i], sizeof(float)) != 0;
+  return differing;
+}
 
 RecipeHost::RecipeHost(const pld_recipe& recipe, const Host& host, const std::function<std::string(pld_stage)>& main)
     : recipe_(recipe), host_(host) {

@@ -10,6 +10,9 @@
 
 namespace pellucid::test {
 
+// How many of two hosts' numbers have other bits. Expects as many of either.
+std::size_t differingWords(const std::vector<float>& a, const std::vector<float>& b);
+
 class RecipeHost {
  public:
   //   main  GLSL behind the seam, of a stage's draws

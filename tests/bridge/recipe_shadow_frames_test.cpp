@@ -2,8 +2,6 @@
 // the table of lookups, and of a frame whose layers ask them.
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "tests/bridge/recipe_host.h"
 #include "tests/bridge/shadow_casters.h"
 #include "tests/support/recipes.h"
@@ -12,8 +10,6 @@ namespace pellucid::test {
 namespace {
 
 constexpr int kSize = 64, kLights = 2, kFaces = 7;
-constexpr pld_shadow_form kForms[] = {PLD_SHADOW_VARIANCE, PLD_SHADOW_PUBLISHED, PLD_SHADOW_NAIVE,
-                                      PLD_SHADOW_STRATIFIED, PLD_SHADOW_CORRECTED};
 
 pld_create_info createInfo(const Host& host) {
   pld_create_info create = host.info();
@@ -143,14 +139,6 @@ Drawn drawnByTheRecipe(Host& host, const pld_shadow_info& maps, const std::vecto
   return drawn;
 }
 
-std::size_t differingWords(const std::vector<float>& a, const std::vector<float>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  std::size_t differing = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    differing += std::memcmp(&a[i], &b[i], sizeof(float)) != 0;
-  return differing;
-}
-
 // Of the casters some stand behind what the sun sees, and rows run either way.
 TEST(BridgeRecipeShadows, AHostThatRunsThemHasTheBitsOfThePass) {
   GlContext context;
@@ -160,7 +148,7 @@ TEST(BridgeRecipeShadows, AHostThatRunsThemHasTheBitsOfThePass) {
   glTextureSubImage2D(depth, 0, 0, 0, kSize, kSize, GL_DEPTH_COMPONENT, GL_FLOAT, opaque.data());
   std::vector<pld_shadow_view> all = sunAndLampViews();
   all[0].depth_texture = depth;
-  for (const pld_shadow_form form : kForms)
+  for (const pld_shadow_form form : kShadowForms)
     for (const bool coloured : {true, false}) {
       const pld_shadow_info maps = shadowInfo(form, kSize, kLights, kFaces, coloured);
       const pld_rows rows = coloured == (form % 2 == 0) ? PLD_ROWS_DOWN : PLD_ROWS_UP;

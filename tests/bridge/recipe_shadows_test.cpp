@@ -11,8 +11,6 @@ namespace pellucid::test {
 namespace {
 
 constexpr int kSize = 64, kLights = 2, kFaces = 7;
-constexpr pld_shadow_form kForms[] = {PLD_SHADOW_VARIANCE, PLD_SHADOW_PUBLISHED, PLD_SHADOW_NAIVE,
-                                      PLD_SHADOW_STRATIFIED, PLD_SHADOW_CORRECTED};
 
 uint64_t bytesOf(const pld_recipe& recipe) {
   uint64_t bytes = 0;
@@ -46,7 +44,7 @@ std::string placeFault(const pld_recipe& recipe, const pld_shadow_view& view, st
 
 TEST(BridgeRecipeShadows, EveryFormIsConsistent) {
   pld_recipe_info info = pld_recipe_info_init(PLD_DIALECT_VULKAN, 450);
-  for (const pld_shadow_form form : kForms)
+  for (const pld_shadow_form form : kShadowForms)
     for (const bool coloured : {true, false}) {
       pld_shadow_info maps = shadowInfo(form, kSize, kLights, kFaces, coloured);
       const RecipePointer recipe = makeShadowRecipe(info, maps);
@@ -84,7 +82,7 @@ TEST(BridgeRecipeShadows, TheGlPassIsOfOnePieceWithThem) {
   create.features = PLD_FEATURE_COLOURED;
   pld_pass* pass = host.create(create);
   ASSERT_NE(pass, nullptr);
-  for (const pld_shadow_form form : kForms)
+  for (const pld_shadow_form form : kShadowForms)
     for (const bool coloured : {true, false}) {
       const pld_shadow_info maps = shadowInfo(form, kSize, kLights, kFaces, coloured);
       ASSERT_EQ(pld_shadow_resize(pass, &maps), PLD_OK) << pld_message(pass);

@@ -9,6 +9,9 @@
 
 namespace pellucid::test {
 
+constexpr pld_shadow_form kShadowForms[] = {PLD_SHADOW_VARIANCE, PLD_SHADOW_PUBLISHED, PLD_SHADOW_NAIVE,
+                                            PLD_SHADOW_STRATIFIED, PLD_SHADOW_CORRECTED};
+
 // Room for the maps of a scene's lights.
 pld_shadow_info shadowInfo(pld_shadow_form form, int size, int lights, int faces, bool coloured);
 
